@@ -1,0 +1,1 @@
+"""The rectifiers, one file each."""

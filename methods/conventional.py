@@ -1,0 +1,85 @@
+"""Conventional rectification: undistort to a perspective image and turn it into the epipolar frame."""
+
+from typing import Literal
+
+import numpy as np
+
+import rectbench as rb
+
+LEAST_FOCAL_SHARE = 0.01
+"""A focal length below this share of the source's resolution shows the world as a dot: refused."""
+
+
+class Conventional(rb.Rectifier):
+    """û = c_x + f x/z, v̂ = c_y + f y/z after Bouguet's rotations; rays behind the image are masked."""
+
+    name = "conventional"
+    references = (
+        "Bouguet, Camera Calibration Toolbox for Matlab, 2004",
+        "Fusiello, Trucco and Verri, A compact algorithm for rectification of stereo pairs, 2000",
+    )
+
+    class Options(rb.Options):
+        focal: Literal["centre-resolution", "min-distortion", "fov", "balance"] = rb.option(
+            "centre-resolution",
+            "how f is chosen: the source's pixels per radian at its centre, the least distortion L "
+            "(the paper's; tends to a tiny image on wide lenses), a field of view, or a balance",
+        )
+        fov_deg: float = rb.option(
+            100.0, "horizontal field of view of the rectified image, for focal=fov", gt=0, lt=179
+        )
+        balance: float = rb.option(
+            0.0, "for focal=balance: 0 shows source pixels only, 1 all of the source's rim", ge=0, le=1
+        )
+
+    def fit(self, problem: rb.Problem, options: Options) -> rb.Rectification:
+        rb.refuse_epipole_in_view(problem.rig)
+        rig, size = problem.rig, rb.perspective_size(problem.rig)
+        focal = {
+            "centre-resolution": lambda: rb.centre_resolution_px(rig),
+            "min-distortion": lambda: self.least_distorted(problem, size),
+            "fov": lambda: size[0] / 2 / np.tan(np.radians(options.fov_deg) / 2),
+            "balance": lambda: self.balanced(rig, size, options.balance),
+        }[options.focal]()
+        if not focal >= LEAST_FOCAL_SHARE * rb.centre_resolution_px(rig):
+            raise rb.Unsupported(
+                f"focal={options.focal} gives f = {focal:.3g} px where the source has "
+                f"{rb.centre_resolution_px(rig):.0f}: the lens is too wide for it"
+            )
+        return self.at_focal(rig, focal, size)
+
+    def at_focal(self, rig: rb.Rig, focal: float, size: tuple[int, int]) -> rb.Rectification:
+        """The perspective rectification of one focal length, the sources' middles in the middle."""
+        rays = rb.centre_rays(rig)
+        if (rays[:, 2] <= 0).any():
+            raise rb.Unsupported(
+                "the images' middles lie behind the rectified plane: the cameras look too far apart"
+            )
+        middle = focal * (rays[:, :2] / rays[:, 2:]).mean(axis=0)
+        cx, cy = (np.array(size) - 1) / 2 - middle
+        target = rb.Perspective.from_focal(focal, cx, cy)
+        return rb.Rectification.from_targets(rig, target, target, size, {"focal_px": focal})
+
+    def least_distorted(self, problem: rb.Problem, size: tuple[int, int]) -> float:
+        """The focal length of least L: a factor on f scales the whole image, so one look is enough."""
+        focal = rb.centre_resolution_px(problem.rig)
+        score = rb.metrics.distortion(
+            self.at_focal(problem.rig, focal, size), problem.rig, problem.pixels_left, protocol="rescaled"
+        )
+        return focal * score.scales[0]
+
+    def balanced(self, rig: rb.Rig, size: tuple[int, int], balance: float) -> float:
+        """Between the f whose image just holds both sources' rims (1) and that just filled by them (0)."""
+        at_unit = self.at_focal(rig, 1.0, size)
+        half = (np.array(size) - 1) / 2
+        holding, filling = [], []
+        for warp in (at_unit.left, at_unit.right):
+            pixels, _ = rb.outline_pixels(warp.source)
+            rim = warp.forward(pixels) - half
+            if np.isnan(rim).any():
+                return 0.0  # the rim reaches behind the plane: only a dot would hold it
+            reach = np.abs(rim / half).max(axis=1)
+            holding.append(1 / reach.max())
+            on_rim = (np.abs(pixels + 0.5) % np.array(warp.source.size) == 0).any(axis=1)
+            filling.append(1 / reach[on_rim].min())
+        return balance * min(holding) + (1 - balance) * max(filling)

@@ -1,0 +1,88 @@
+"""Quasi-Euclidean rectification from matches alone (Fusiello and Irsara 2008)."""
+
+import numpy as np
+from scipy.optimize import OptimizeResult, least_squares
+
+import rectbench as rb
+
+START_FOCALS = (0.25, 0.6, 1.5)
+"""Starting focal lengths, in image widths + heights; the best end is kept."""
+FEW_MATCHES = 100
+PLAUSIBLE_VIEW_DEG = (5.0, 170.0)
+
+
+class Fusiello(rb.HomographyRectifier):
+    """H_i = K_new R_i K⁻¹ with five angles and one focal length that minimise the Sampson error."""
+
+    name = "fusiello"
+    references = ("Fusiello and Irsara, Quasi-Euclidean uncalibrated epipolar rectification, ICPR 2008",)
+
+    def homographies(self, view: rb.PinholeView, options: rb.Options) -> tuple:
+        left, right = (np.column_stack([px, np.ones(len(px))]) for px in view.matches)
+        unit = float(sum(view.size))
+
+        def sampson(p: np.ndarray, chosen: slice) -> np.ndarray:
+            return rb.sampson_residuals(fundamental(p, view.centre, unit), left[chosen], right[chosen])
+
+        def fitted(focal: float) -> OptimizeResult:
+            """Five angles at a fixed focal length, then all six: the angles must not pay for a poor start."""
+            log = np.log(focal)
+            turned = least_squares(lambda angles: sampson(np.append(angles, log), few), level, method="lm")
+            return least_squares(sampson, np.append(turned.x, log), method="lm", x_scale=1.0, args=(few,))
+
+        # A few matches tell which start is good; all of them then finish it.
+        few, every = slice(None, None, max(1, len(left) // FEW_MATCHES)), slice(None)
+        roll = upright_roll(*view.matches)
+        level = np.array([0, roll, 0, 0, roll])
+        best = min((fitted(focal) for focal in START_FOCALS), key=lambda fit: fit.cost)
+        best = least_squares(sampson, best.x, method="lm", x_scale=1.0, args=(every,))
+
+        R_left, R_right, focal = unpack(best.x, unit)
+        K = intrinsics(focal, view.centre)
+        fov_deg = float(np.degrees(2 * np.arctan(view.size[0] / 2 / focal)))
+        notes: dict[str, float | str] = {
+            "focal_px": focal,
+            "sampson_rms_px": float(np.sqrt(2 * best.cost / len(left))),
+        }
+        if not PLAUSIBLE_VIEW_DEG[0] <= fov_deg <= PLAUSIBLE_VIEW_DEG[1]:
+            notes["warning"] = (
+                f"the fitted focal length means a view of {fov_deg:.1f}°: the matches leave it open"
+            )
+        return K @ R_left @ np.linalg.inv(K), K @ R_right @ np.linalg.inv(K), notes
+
+
+def upright_roll(left: np.ndarray, right: np.ndarray) -> float:
+    """The quarter turn that lays a mostly vertical displacement along the rows; 0 for any other."""
+    along, across = np.median(right - left, axis=0)
+    return 0.0 if abs(across) <= abs(along) else float(np.pi / 2)
+
+
+def unpack(p: np.ndarray, unit: float) -> tuple[np.ndarray, np.ndarray, float]:
+    """R_left (its x-rotation fixed at 0), R_right and the focal length in px, of the six parameters."""
+    focal = float(unit * np.exp(np.clip(p[5], -8, 8)))
+    return rotation(0.0, p[0], p[1]), rotation(p[2], p[3], p[4]), focal
+
+
+def rotation(x: float, y: float, z: float) -> np.ndarray:
+    """Rx Ry Rz. Written out: the fit asks for thousands of them."""
+    (cx, cy, cz), (sx, sy, sz) = np.cos([x, y, z]), np.sin([x, y, z])
+    return np.array(
+        [
+            [cy * cz, -cy * sz, sy],
+            [cx * sz + sx * sy * cz, cx * cz - sx * sy * sz, -sx * cy],
+            [sx * sz - cx * sy * cz, sx * cz + cx * sy * sz, cx * cy],
+        ]
+    )
+
+
+def intrinsics(focal: float, centre: np.ndarray) -> np.ndarray:
+    """K of a pinhole image whose principal point is its middle."""
+    return np.array([[focal, 0, centre[0]], [0, focal, centre[1]], [0, 0, 1.0]])
+
+
+def fundamental(p: np.ndarray, centre: np.ndarray, unit: float) -> np.ndarray:
+    """F = K⁻ᵀ R'ᵀ [e_x]× R K⁻¹: after both rotations the rows agree."""
+    R_left, R_right, focal = unpack(p, unit)
+    from_pixel = np.array([[1, 0, -centre[0]], [0, 1, -centre[1]], [0, 0, focal]])  # f K⁻¹
+    left, right = R_left @ from_pixel, R_right @ from_pixel
+    return np.outer(right[2], left[1]) - np.outer(right[1], left[2])

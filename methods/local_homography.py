@@ -1,0 +1,126 @@
+"""Pixel-variant local homography (Zhou, Dai and Li): the cubics in γ and β with the least distortion."""
+
+from typing import Literal
+
+import numpy as np
+from scipy.optimize import minimize
+
+import rectbench as rb
+
+LEAST_SLOPE = 1e-3
+"""Ψ' stays above this share of the source's centre resolution, so that the inverse keeps its digits."""
+
+
+class LocalHomography(rb.Rectifier):
+    """û = Ψ_u(γ), v̂ = Ψ_v(β), cubics that minimise the resampling distortion L under Ψ' > 0."""
+
+    name = "local-homography"
+    references = (
+        "Zhou, Dai and Li, Pixel-variant Local Homography for Fisheye Stereo Rectification "
+        "Minimizing Resampling Distortion",
+    )
+
+    class Options(rb.Options):
+        alpha_ratio: float = rb.option(0.5, "weight α1 of the aspect ratio loss", ge=0)
+        alpha_skew: float = rb.option(0.5, "weight α2 of the skew loss", ge=0)
+        columns: Literal["per-image", "shared"] = rb.option(
+            "per-image", "whether each image has its own Ψ_u or both share one"
+        )
+
+    def fit(self, problem: rb.Problem, options: Options) -> rb.Rectification:
+        rb.refuse_epipole_in_view(problem.rig)
+        focal = rb.centre_resolution_px(problem.rig)
+        bounds = rb.view_angles(problem.rig)
+        if options.columns == "shared":
+            bounds = bounds._replace(gamma_left=bounds.gamma, gamma_right=bounds.gamma)
+        energy = Energy(problem, options)
+        constraint = {
+            "type": "ineq",
+            "fun": lambda c: slopes(c, bounds) - LEAST_SLOPE,
+            "jac": lambda c: slope_gradients(c, bounds),
+        }
+        start = np.tile([1.0, 0.0, 0.0], 3)  # Ψ(θ) = f θ, Abraham's equidistant map
+        found = minimize(
+            lambda c: energy(c * focal, focal),
+            start,
+            jac=True,
+            method="SLSQP",
+            constraints=constraint,
+            options={"maxiter": 500, "ftol": 1e-13},
+        )
+        left, right, rows = (focal * found.x).reshape(3, 3)
+        if options.columns == "shared":
+            right = left
+        u_left, u_right = place((left, right), (bounds.gamma_left, bounds.gamma_right))
+        (v,) = place((rows,), (bounds.beta,))
+        width = max(u_left(bounds.gamma_left.high), u_right(bounds.gamma_right.high)) + 0.5
+        size = int(np.ceil(width)), int(np.ceil(v(bounds.beta.high) + 0.5))
+        notes = {"energy": float(found.fun), "iterations": float(found.nit)}
+        return rb.Rectification.from_targets(
+            problem.rig, rb.Epipolar(u_left, v), rb.Epipolar(u_right, v), size, notes
+        )
+
+
+class Energy:
+    """L of the coefficients (c1, c2, c3) of Ψ_u left, Ψ_u right and Ψ_v, with its gradient."""
+
+    def __init__(self, problem: rb.Problem, options: LocalHomography.Options) -> None:
+        warps, pixels = problem.angle_warps(), (problem.pixels_left, problem.pixels_right)
+        angles = [warp.forward(px) for warp, px in zip(warps, pixels, strict=True)]
+        J = np.concatenate([warp.jacobian(px) for warp, px in zip(warps, pixels, strict=True)])
+        (self.gamma_u, self.gamma_v), (self.beta_u, self.beta_v) = np.moveaxis(J, 0, -1)
+        self.area = np.abs(self.gamma_u * self.beta_v - self.gamma_v * self.beta_u)
+        gamma_left, gamma_right = (slope_basis(a[:, 0]) for a in angles)
+        none_left, none_right = np.zeros_like(gamma_left), np.zeros_like(gamma_right)
+        self.columns = np.block([[gamma_left, none_left], [none_right, gamma_right]])
+        if options.columns == "shared":
+            self.columns = np.block([[gamma_left, none_left], [gamma_right, none_right]])
+        self.rows = slope_basis(np.concatenate([a[:, 1] for a in angles]))
+        self.weights = np.sqrt([1.0, options.alpha_ratio, options.alpha_skew])[:, None]
+
+    def __call__(self, c: np.ndarray, scale: float) -> tuple[float, np.ndarray]:
+        """L, the mean per pixel, and its derivative by c / scale."""
+        A, B = self.columns @ c[:6], self.rows @ c[6:]  # Ψ_u'(γ) and Ψ_v'(β)
+        w1, w2 = np.hypot(A * self.gamma_u, B * self.beta_u), np.hypot(A * self.gamma_v, B * self.beta_v)
+        skew_u, skew_v = self.gamma_u * self.gamma_v, self.beta_u * self.beta_v
+        loss = self.weights * [A * B * self.area - 1, w1 - w2, A**2 * skew_u + B**2 * skew_v]
+        by_A = [B * self.area, A * (self.gamma_u**2 / w1 - self.gamma_v**2 / w2), 2 * A * skew_u]
+        by_B = [A * self.area, B * (self.beta_u**2 / w1 - self.beta_v**2 / w2), 2 * B * skew_v]
+        pull = 2 * scale / len(A) * self.weights * loss
+        gradient = [(pull * by_A).sum(axis=0) @ self.columns, (pull * by_B).sum(axis=0) @ self.rows]
+        return float((loss**2).sum() / len(A)), np.concatenate(gradient)
+
+
+def slope_basis(theta: np.ndarray) -> np.ndarray:
+    """Ψ'(θ) = slope_basis(θ) @ (c1, c2, c3)."""
+    theta = np.asarray(theta, dtype=float)
+    return np.stack([np.ones_like(theta), 2 * theta, 3 * theta**2], axis=-1)
+
+
+def slope_places(c: np.ndarray, bounds: rb.ViewAngles) -> np.ndarray:
+    """Where Ψ', a parabola, can be least on its range [3, 3]: both ends, and its vertex held inside."""
+    low, high = np.array(bounds).T
+    _, c2, c3 = c.reshape(3, 3).T
+    vertex = -c2 / np.where(np.abs(c3) > 1e-12, 3 * c3, np.inf)
+    return np.stack([low, high, np.clip(vertex, low, high)], axis=-1)
+
+
+def slopes(c: np.ndarray, bounds: rb.ViewAngles) -> np.ndarray:
+    """Ψ' at those places [9]: positive there is positive everywhere."""
+    return np.einsum("kpi,ki->kp", slope_basis(slope_places(c, bounds)), c.reshape(3, 3)).ravel()
+
+
+def slope_gradients(c: np.ndarray, bounds: rb.ViewAngles) -> np.ndarray:
+    """d(slopes)/dc [9, 9]; Ψ' is flat at its vertex, so that the vertex's own motion adds nothing."""
+    basis = slope_basis(slope_places(c, bounds))
+    gradients = np.zeros((3, 3, 3, 3))
+    for k in range(3):
+        gradients[k, :, k] = basis[k]
+    return gradients.reshape(9, 9)
+
+
+def place(coefficients: tuple[np.ndarray, ...], ranges: tuple[tuple[float, float], ...]) -> list[rb.Cubic]:
+    """Cubics that share c0, chosen so that the least of them begins at the frame's edge, -0.5 px."""
+    unplaced = [rb.Cubic(0.0, *c, *span) for c, span in zip(coefficients, ranges, strict=True)]
+    c0 = -0.5 - min(float(cubic(cubic.low)) for cubic in unplaced)
+    return [rb.Cubic(c0, cubic.c1, cubic.c2, cubic.c3, cubic.low, cubic.high) for cubic in unplaced]

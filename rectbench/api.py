@@ -1,0 +1,182 @@
+"""The verbs of `import rectbench as rb`: rectify a rig, render a scene, run a report."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rectbench.bench.pairs import build_world, placed, render_seed
+from rectbench.bench.plugins import is_path, registry
+from rectbench.bench.rectifying import checked_options, fit
+from rectbench.cameras.arrays import FloatArray
+from rectbench.errors import InvalidInput
+from rectbench.rigs import Rig, load_rig
+from rectbench.warps import Images, Matches, Rectification, pose_problem
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from rectbench.bench.report_spec import Report
+    from rectbench.rendering.images import StereoPair
+    from rectbench.rendering.truth import Truth
+
+SIDES = ("left", "right")
+
+
+def rectify(
+    rig: Rig,
+    method: str | Path = "local-homography",
+    images: StereoPair | Sequence[ArrayLike] | None = None,
+    pixels: ArrayLike | None = None,
+    matches: Sequence[ArrayLike] | None = None,
+    seed: int = 0,
+    **options: Any,
+) -> Rectification:
+    """Rectify a rig.
+
+    Parameters
+    ----------
+    rig : the calibrated rig, see `load_rig`.
+    method : a method's name (`rectbench list methods`), or the path of a file that holds one.
+    images : the two photographs [H, W] or [H, W, 3], of their cameras' sizes; for methods that look
+        at them.
+    pixels : [N, 2] source pixels, the same in both images, whose distortion a method minimises; by
+        default the evaluation grid of about 500 that the metric uses.
+    matches : corresponding pixels (left [N, 2], right [N, 2]), for methods that work from them; by
+        default they are made from the rig's pose.
+    seed : of a method's random choices.
+    options : the method's own (`rectbench list methods --verbose`).
+
+    Returns the rectification, see `Rectification`. Raises UnknownName for a method or option that
+    does not exist; InvalidInput for an argument that cannot be used; Unsupported, with the reason,
+    where the method cannot serve this rig; InvalidResult where a plugin's answer is no rectification.
+    """
+    if not isinstance(rig, Rig):
+        raise InvalidInput(f"rig is {type(rig).__name__}; expected a Rig, see rectbench.load_rig")
+    plugin = registry("methods").get(method)
+    problem = pose_problem(
+        rig,
+        pixels=None if pixels is None else _checked_pixels(pixels, "pixels"),
+        matches=None if matches is None else _checked_matches(matches),
+        images=None if images is None else _checked_images(images, rig),
+        seed=_checked_seed(seed),
+    )
+    return fit(plugin, problem, checked_options(plugin, options))
+
+
+def render(
+    scene: str | Path,
+    rig: Rig | str | Path,
+    motion: str = "as-calibrated",
+    seed: int = 0,
+    spp: int = 64,
+    quality: str = "path",
+    image_width: int | None = None,
+) -> tuple[StereoPair, Truth]:
+    """Render a rig in a scene: the same pair as a report's for the same names and seed.
+
+    Parameters
+    ----------
+    scene : a scene's name, or the path of a file that holds one or of a Mitsuba `.xml`.
+    rig : a rig, or the name or path of one.
+    motion : how the right camera stands to the left, see `rectbench list motions`.
+    seed : of the scene, the motion's irregularities and the noise.
+    spp : samples a pixel, a power of two.
+    quality : `path` traces light paths, `fast` shades at a tenth of the cost.
+    image_width : width to which the rig is scaled, pixels; its own by default.
+
+    Returns the images and the truth about them. Raises UnknownName, InvalidInput, or Unavailable
+    where this machine cannot render.
+    """
+    from rectbench.rendering.pair import render_pair
+
+    found = registry("scenes").get(scene)
+    source = str(Path(scene).resolve()) if is_path(scene) else str(scene)
+    calibrated = rig if isinstance(rig, Rig) else load_rig(rig)
+    if image_width is not None and image_width < 1:
+        raise InvalidInput(f"image_width is {image_width}; expected a width in pixels")
+    true_rig = placed(calibrated, found.name, motion, _checked_seed(seed), image_width)
+    noise = render_seed(found.name, calibrated.name, motion, seed)
+    return render_pair(build_world(source, seed), true_rig, seed=noise, spp=spp, quality=quality)
+
+
+def run(
+    report: Report | str | Path,
+    out: str | Path | None = None,
+    methods: Sequence[str] | None = None,
+    scenes: Sequence[str] | None = None,
+    rigs: Sequence[str] | None = None,
+    seeds: Sequence[int] | None = None,
+    options: Mapping[str, Mapping[str, Any]] | None = None,
+    jobs: int | None = None,
+    dask: str | None = None,
+    fresh: bool = False,
+    progress: bool | None = None,
+) -> pd.DataFrame:
+    """Run a report and write its folder: results, tables, figures and `index.html`.
+
+    The arguments are those of `rectbench.bench.running.run`. Returns the rows of `results.parquet`.
+    """
+    from rectbench.bench import running
+    from rectbench.reporting import write_report
+
+    table = running.run(
+        report,
+        out,
+        methods=methods,
+        scenes=scenes,
+        rigs=rigs,
+        seeds=seeds,
+        options=options,
+        jobs=jobs,
+        dask=dask,
+        fresh=fresh,
+        progress=progress,
+    )
+    write_report(running.run_folder(report, out))
+    return table
+
+
+def _checked_seed(seed: Any) -> int:
+    if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or seed < 0:
+        raise InvalidInput(f"seed is {seed!r}; expected a whole number from 0 on")
+    return int(seed)
+
+
+def _checked_pixels(pixels: ArrayLike, name: str) -> FloatArray:
+    try:
+        points = np.asarray(pixels, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise InvalidInput(f"{name} are no numbers; expected [N, 2] pixels") from None
+    if points.ndim != 2 or points.shape[1] != 2 or not len(points):
+        raise InvalidInput(f"{name} have shape {points.shape}; expected [N, 2]")
+    if not np.isfinite(points).all():
+        raise InvalidInput(f"{name} hold NaN or infinity; expected finite pixels")
+    return points
+
+
+def _checked_matches(matches: Sequence[ArrayLike]) -> Matches:
+    if len(matches) != 2:
+        raise InvalidInput(f"matches hold {len(matches)} arrays; expected (left [N, 2], right [N, 2])")
+    left, right = (_checked_pixels(px, f"{side} matches") for px, side in zip(matches, SIDES, strict=True))
+    if left.shape != right.shape:
+        raise InvalidInput(f"matches have {len(left)} left and {len(right)} right pixels; expected as many")
+    return Matches(left, right)
+
+
+def _checked_images(images: StereoPair | Sequence[ArrayLike], rig: Rig) -> Images:
+    given = [getattr(images, side) for side in SIDES] if hasattr(images, "left") else list(images)
+    if len(given) != 2:
+        raise InvalidInput(f"images hold {len(given)} arrays; expected (left, right)")
+    arrays: list[NDArray[np.generic]] = [np.asarray(image) for image in given]
+    for side, image in zip(SIDES, arrays, strict=True):
+        camera = getattr(rig, side)
+        if image.ndim not in (2, 3) or image.shape[:2] != (camera.height, camera.width):
+            size = "x".join(map(str, image.shape[1::-1]))
+            expected = f"{camera.width}x{camera.height}, the size of rig {rig.name}'s camera"
+            raise InvalidInput(f"the {side} image is {size} px; expected {expected}")
+    return Images(*arrays)

@@ -1,0 +1,195 @@
+"""One cell: a method on a pair, fitted, timed and measured. Runs in a worker process."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Callable
+from dataclasses import asdict
+from functools import lru_cache
+from pathlib import Path
+from typing import TypeVar
+
+import numpy as np
+
+from rectbench.bench.features import scored_features
+from rectbench.bench.keys import Inputs, code_digest, derived_seed, versions
+from rectbench.bench.outcomes import LASTING, Outcome, outcome_of
+from rectbench.bench.pairs import image_inputs, load_images, load_truth, make_pair, placed_rig, truth_inputs
+from rectbench.bench.planning import CellTask, PairTask
+from rectbench.bench.plugins import registry
+from rectbench.bench.rectifying import checked_options, fit
+from rectbench.bench.store import Store
+from rectbench.metrics import measure
+from rectbench.rendering.truth import Truth
+from rectbench.rigs import Rig
+from rectbench.rigs.poses import POSES, perturb
+from rectbench.warps import Images, Matches, Problem, Rectification, pose_problem
+
+CELLS = "cells"
+ROW = "row.json"
+MEASURING_CODE = ("warps", "matching", "metrics", "bench/cells", "bench/features", "bench/rectifying")
+MEASURING_PACKAGES = ("numpy", "scipy", "opencv-contrib-python-headless", "drjit", "pydantic")
+
+SCORED_MATCHES = 10_000
+"""Correspondences the row error is taken over."""
+
+REPEATS = 3
+SLOW_CALL_S = 1.0
+
+Result = TypeVar("Result")
+
+
+def cell_inputs(task: CellTask) -> Inputs:
+    """All that shapes the row of a cell; its report's name does not."""
+    method = registry("methods").get(task.method_source)
+    return {
+        "truth": truth_inputs(task.pair),
+        "images": image_inputs(task.pair) if _uses_images(task) else None,
+        "pose": task.cell.pose,
+        "method": method.name,
+        "method_source": method.digest,
+        "options": checked_options(method, task.options).model_dump(mode="json"),
+        "metrics": sorted(task.metrics),
+        "match_count": task.match_count,
+        "match_noise_px": task.match_noise_px,
+        "code": code_digest(*MEASURING_CODE),
+        "versions": dict(versions(*MEASURING_PACKAGES)),
+    }
+
+
+def _uses_images(task: CellTask) -> bool:
+    needs = registry("methods").get(task.method_source).value.needs
+    return "images" in needs or "row_error_features" in task.metrics
+
+
+def stored_outcome(task: CellTask, store: Store) -> Outcome | None:
+    """What an earlier run found for this cell; None where it has to be run."""
+    folder = store.read(CELLS, cell_inputs(task))
+    if folder is None:
+        return None
+    return Outcome(**json.loads((folder / ROW).read_text(encoding="utf-8")))
+
+
+def run_cell(task: CellTask, store_root: Path) -> Outcome:
+    """Run a cell and store how it ended; whatever a plugin raises becomes a status."""
+    store = Store(store_root)
+    try:
+        outcome = _measured(task, store)
+    except BaseException as error:  # a plugin may raise anything, SystemExit and KeyboardInterrupt too
+        outcome = outcome_of(error)
+    keep(task, outcome, store)
+    return outcome
+
+
+def keep(task: CellTask, outcome: Outcome, store: Store) -> None:
+    """Store how a cell ended, if it would end so again."""
+    if outcome.status in LASTING:
+        text = json.dumps(asdict(outcome))
+        store.write(CELLS, cell_inputs(task), lambda folder: _write(folder / ROW, text))
+
+
+def run_pair(pair: PairTask, store_root: Path) -> Outcome:
+    """Render a pair into the store; whatever a scene raises becomes a status."""
+    try:
+        make_pair(pair, Store(store_root))
+    except BaseException as error:  # a plugin may raise anything
+        return outcome_of(error)
+    return Outcome()
+
+
+def believed_rig(task: CellTask) -> Rig:
+    """What the rectifier is told: the true rig, its pose off by the noise of the cell's pose level."""
+    cell, rig = task.cell, placed_rig(task.pair)
+    # Not named after the method: all methods of a pair are misled in the same way.
+    seed = derived_seed("pose", cell.scene, cell.rig, cell.motion, cell.pose, cell.seed)
+    return perturb(rig, POSES[cell.pose], seed)
+
+
+def problem_of(task: CellTask, store: Store) -> Problem:
+    """What the cell's rectifier may know."""
+    cell, needs = task.cell, registry("methods").get(task.method_source).value.needs
+    images = load_images(task.pair, store) if "images" in needs else None
+    return pose_problem(
+        believed_rig(task),
+        matches=_noisy_matches(task, store) if "matches" in needs else None,
+        images=Images(images.left, images.right) if images else None,
+        seed=derived_seed("method", cell.scene, cell.rig, cell.motion, cell.pose, cell.method, cell.seed),
+    )
+
+
+def _noisy_matches(task: CellTask, store: Store) -> Matches:
+    cell = task.cell
+    seed = derived_seed("matches", cell.scene, cell.rig, cell.motion, cell.seed)
+    truth = _truth(task.pair, store)
+    return Matches(*truth.matches(task.match_count, seed=seed, noise_px=task.match_noise_px))
+
+
+@lru_cache(maxsize=1)
+def _true_matches(pair: PairTask, store: Store) -> Matches:
+    return Matches(*_truth(pair, store).matches(SCORED_MATCHES))
+
+
+@lru_cache(maxsize=1)
+def _feature_matches(pair: PairTask, store: Store) -> Matches:
+    return scored_features(load_images(pair, store), placed_rig(pair))
+
+
+@lru_cache(maxsize=1)
+def _truth(pair: PairTask, store: Store) -> Truth:
+    """Kept, since the methods of one pair run one after another."""
+    return load_truth(pair, store)
+
+
+def _measured(task: CellTask, store: Store) -> Outcome:
+    method = registry("methods").get(task.method_source)
+    options, problem = checked_options(method, task.options), problem_of(task, store)
+    columns: dict[str, float] = {}
+    if "timing" in task.metrics:
+        rectification, columns["fit_s"] = timed(lambda: fit(method, problem, options))
+    else:
+        rectification = fit(method, problem, options)
+    columns |= _scores(task, rectification, store)
+    if "timing" in task.metrics:
+        columns |= _warp_times(rectification)
+    return Outcome(metrics=columns, notes=dict(rectification.notes))
+
+
+def _scores(task: CellTask, rectification: Rectification, store: Store) -> dict[str, float]:
+    true_matches = feature_matches = None
+    if "row_error" in task.metrics:
+        true_matches = _true_matches(task.pair, store)
+    if "row_error_features" in task.metrics:
+        feature_matches = _feature_matches(task.pair, store)
+    return measure(
+        rectification, placed_rig(task.pair), true_matches=true_matches, feature_matches=feature_matches
+    )
+
+
+def _warp_times(rectification: Rectification) -> dict[str, float]:
+    _, maps_s = timed(lambda: (rectification.maps("left"), rectification.maps("right")))
+    left, right = (
+        np.full((camera.height, camera.width, 3), 127, dtype=np.uint8)
+        for camera in (rectification.left.source, rectification.right.source)
+    )
+    _, both_s = timed(lambda: rectification.remap(left, right))
+    return {"maps_s": maps_s, "warp_s": both_s}
+
+
+def timed(call: Callable[[], Result]) -> tuple[Result, float]:
+    """The result of `call` and the seconds it takes warm: the best of 3 calls after a first one.
+
+    A call of more than a second is timed as it is: it hardly feels that the caches were cold.
+    """
+    seconds: list[float] = []
+    while len(seconds) <= REPEATS:
+        start = time.perf_counter()
+        result = call()
+        seconds.append(time.perf_counter() - start)
+        if seconds[0] > SLOW_CALL_S:
+            return result, seconds[0]
+    return result, min(seconds[1:])
+
+
+def _write(path: Path, text: str) -> None:
+    path.write_text(text, encoding="utf-8")

@@ -1,0 +1,30 @@
+"""Feature matches of a rendered pair, freed of gross outliers by the true geometry, for scoring alone."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rectbench.matching import sift_matches
+from rectbench.rendering.images import StereoPair
+from rectbench.rigs import Rig
+from rectbench.warps import Matches, centre_resolution_px
+
+FARTHEST_PX = 3.0
+"""A match farther from its true epipolar plane is a wrong match, not an imprecise one."""
+
+
+def scored_features(images: StereoPair, rig: Rig) -> Matches:
+    """SIFT matches [N, 2] each within 3 px of the true rig's epipolar planes.
+
+    The distance is the angle between the right ray and the plane of the left one, times the pixels
+    per radian at the centre. A rectifier never sees these matches.
+    """
+    found = sift_matches(images.left, images.right)
+    rays_left, ok_left = rig.left.unproject(found.left)
+    rays_right, ok_right = rig.right.unproject(found.right)
+    normals = rays_left @ rig.essential_matrix.T
+    with np.errstate(invalid="ignore", divide="ignore"):
+        sines = (rays_right * normals).sum(axis=-1) / np.linalg.norm(normals, axis=-1)
+        near = np.abs(np.arcsin(np.clip(sines, -1, 1))) * centre_resolution_px(rig) <= FARTHEST_PX
+    kept = ok_left & ok_right & near
+    return Matches(found.left[kept], found.right[kept])

@@ -1,0 +1,154 @@
+"""The pair under a cell: the rig placed in its scene, rendered once and kept in the store."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+from rectbench.bench.keys import Inputs, code_digest, derived_seed, versions
+from rectbench.bench.planning import PairTask
+from rectbench.bench.plugins import registry
+from rectbench.bench.store import Store
+from rectbench.cameras import Camera
+from rectbench.errors import InvalidResult, Unavailable, UnknownName
+from rectbench.rendering.images import StereoPair
+from rectbench.rendering.truth import Truth
+from rectbench.rendering.world import World
+from rectbench.rendering.xml_world import XmlWorld
+from rectbench.rigs import Rig, load_rig
+from rectbench.rigs.motions import MOTIONS
+
+TRUTH, IMAGES = "truth", "images"
+GEOMETRY_CODE = ("errors", "cameras", "rigs")
+RENDERING_CODE = (*GEOMETRY_CODE, "rendering", "bench/pairs")
+RENDERING_PACKAGES = ("numpy", "scipy", "opencv-contrib-python-headless", "mitsuba", "drjit")
+
+
+def placed_rig(pair: PairTask) -> Rig:
+    """The true rig of a pair."""
+    return placed(load_rig(pair.rig_source), pair.scene, pair.motion, pair.seed, pair.image_width)
+
+
+def placed(rig: Rig, scene: str, motion: str, seed: int, image_width: int | None) -> Rig:
+    """A rig scaled to `image_width` pixels, its right camera moved as the motion says.
+
+    Raises UnknownName for a motion that does not exist.
+    """
+    if motion not in MOTIONS:
+        raise UnknownName("motion", motion, MOTIONS)
+    if image_width is not None:
+        rig = rig.scaled(image_width / rig.left.width)
+    return MOTIONS[motion].apply(rig, derived_seed("motion", scene, rig.name, motion, seed))
+
+
+def render_seed(scene: str, rig: str, motion: str, seed: int) -> int:
+    """The seed of the noise in the images of a pair."""
+    return derived_seed("render", scene, rig, motion, seed)
+
+
+def truth_inputs(pair: PairTask) -> Inputs:
+    """All that shapes the truth of a pair."""
+    return {
+        "scene": pair.scene,
+        "scene_source": registry("scenes").get(pair.scene_source).digest,
+        "rig": rig_numbers(load_rig(pair.rig_source)),
+        "image_width": pair.image_width,
+        "motion": pair.motion,
+        "seed": pair.seed,
+        "code": code_digest(*RENDERING_CODE),
+        "versions": dict(versions(*RENDERING_PACKAGES)),
+    }
+
+
+def image_inputs(pair: PairTask) -> Inputs:
+    """All that shapes the images of a pair."""
+    return {**truth_inputs(pair), "quality": pair.quality, "spp": pair.spp}
+
+
+def rig_numbers(rig: Rig) -> dict[str, Any]:
+    """A rig as JSON: its name and every number in it."""
+    return {
+        "name": rig.name,
+        "left": _camera_numbers(rig.left),
+        "right": _camera_numbers(rig.right),
+        "R_right_left": rig.R_right_left.tolist(),
+        "t_right_left": rig.t_right_left.tolist(),
+    }
+
+
+def _camera_numbers(camera: Camera) -> dict[str, Any]:
+    return {
+        "model": camera.model,
+        "size": list(camera.size),
+        "params": {name: list(v) if isinstance(v, tuple) else v for name, v in camera.params.items()},
+        "max_angle_deg": camera.max_angle_deg,
+    }
+
+
+def is_made(pair: PairTask, store: Store) -> bool:
+    """Whether the store has all that is asked of the pair, its files unchecked."""
+    return (not pair.truth or store.has(TRUTH, truth_inputs(pair))) and (
+        not pair.images or store.has(IMAGES, image_inputs(pair))
+    )
+
+
+def make_pair(pair: PairTask, store: Store) -> None:
+    """Render what is asked of the pair and the store lacks; one process at a time makes one pair."""
+    with store.making(TRUTH, truth_inputs(pair)):
+        truth = pair.truth and store.read(TRUTH, truth_inputs(pair)) is None
+        images = pair.images and store.read(IMAGES, image_inputs(pair)) is None
+        if truth or images:
+            _render(pair, store, truth=truth, images=images)
+
+
+def load_truth(pair: PairTask, store: Store) -> Truth:
+    """The truth of a pair, made first where the store lacks it."""
+    return Truth.load(_folder(TRUTH, pair, store) / "truth.npz")
+
+
+def load_images(pair: PairTask, store: Store) -> StereoPair:
+    """The images of a pair, made first where the store lacks them."""
+    return StereoPair.load(_folder(IMAGES, pair, store))
+
+
+def _folder(kind: str, pair: PairTask, store: Store) -> Path:
+    inputs = truth_inputs(pair) if kind == TRUTH else image_inputs(pair)
+    folder = store.read(kind, inputs)
+    if folder is None:
+        make_pair(pair, store)
+        folder = store.read(kind, inputs)
+    if folder is None:
+        raise Unavailable(f"the store at {store.root} does not keep what is written to it")
+    return folder
+
+
+def _render(pair: PairTask, store: Store, *, truth: bool, images: bool) -> None:
+    from rectbench.rendering.pair import render_pair  # needs Mitsuba; a stored pair does not
+
+    rendered, exact = render_pair(
+        build_world(pair.scene_source, pair.seed),
+        placed_rig(pair),
+        seed=render_seed(pair.scene, pair.rig, pair.motion, pair.seed),
+        spp=pair.spp,
+        quality=pair.quality,
+        truth=truth,
+        images=images,
+    )
+    if exact is not None:
+        store.write(TRUTH, truth_inputs(pair), lambda folder: exact.save(folder / "truth.npz"))
+    if rendered is not None:
+        store.write(IMAGES, image_inputs(pair), rendered.save)
+
+
+@lru_cache(maxsize=1)
+def build_world(scene_source: str, seed: int) -> World | XmlWorld:
+    """The world of a scene; kept, since the rigs of one scene are rendered one after another.
+
+    Raises InvalidResult where the scene returns something else.
+    """
+    scene = registry("scenes").get(scene_source).value
+    world = scene.builder(seed)
+    if not isinstance(world, World | XmlWorld):
+        raise InvalidResult(f"scene {scene.name} returned {type(world).__name__}; expected a World")
+    return world

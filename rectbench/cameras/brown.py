@@ -1,0 +1,97 @@
+"""The distortion of Brown and Conrady with OpenCV's rational and thin-prism terms, and its inverse.
+
+The coefficients are k1 k2 p1 p2 k3 k4 k5 k6 s1 s2 s3 s4, in OpenCV's order and meaning
+(https://docs.opencv.org/4.x/d9/d0c/group__calib3d.html).
+"""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+from numpy.polynomial import Polynomial
+
+from rectbench.cameras.arrays import NUMPY, JetNamespace, as_jets, variables
+from rectbench.cameras.domain import FARTHEST, LEAST_SLOPE, first_root
+from rectbench.cameras.inversion import invert_in_disk
+
+COEFFICIENTS = ("k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6", "s1", "s2", "s3", "s4")
+STEEPEST = 1e5
+"""Slope at which a rational distortion ends on its way to a pole, hundreds of focal lengths out."""
+RADIAL = ("k1", "k2", "k3", "k4", "k5", "k6")
+
+
+def distorted(c: Any, a: Any, b: Any, xp: Any) -> tuple[Any, Any]:
+    """Where the lens puts the point (a, b) of the ideal plane."""
+    q = a * a + b * b
+    radial = (1.0 + q * (c.k1 + q * (c.k2 + q * c.k3))) / (1.0 + q * (c.k4 + q * (c.k5 + q * c.k6)))
+    ab = 2.0 * a * b
+    return (
+        a * radial + c.p1 * ab + c.p2 * (q + 2.0 * a * a) + q * (c.s1 + q * c.s2),
+        b * radial + c.p1 * (q + 2.0 * b * b) + c.p2 * ab + q * (c.s3 + q * c.s4),
+    )
+
+
+def undistorted(c: Any, a: Any, b: Any, xp: Any) -> tuple[Any, Any, Any]:
+    """The ideal point of the distorted (a, b), and whether there is one; `c` holds the `edge`."""
+    return invert_in_disk(distorted, c, a, b, c.max_radius, c.reach, xp)
+
+
+def edge(p: SimpleNamespace, radius: float = math.inf) -> dict[str, float]:
+    """The greatest radius, up to the given one, on which the distortion is monotone, and its image's.
+
+    Monotone: the symmetric part of its Jacobian keeps its eigenvalues above `LEAST_SLOPE` on the
+    disk of that radius, so no two of its points land on one. For radial terms alone that is where
+    the distorted radius stops rising; without distortion there is no such radius.
+    """
+    radius = min(radius, _monotone_radius(*(getattr(p, name) for name in COEFFICIENTS)))
+    if math.isinf(radius):
+        return {"max_radius": radius, "reach": radius}
+    direction = np.linspace(0.0, 2.0 * math.pi, 180)
+    image = distorted(p, radius * np.cos(direction), radius * np.sin(direction), NUMPY)
+    return {"max_radius": radius, "reach": 1.01 * float(np.hypot(*image).max())}
+
+
+@lru_cache
+def _monotone_radius(*coefficients: float) -> float:
+    if not any(coefficients):
+        return math.inf
+    c = SimpleNamespace(**dict(zip(COEFFICIENTS, coefficients, strict=True)))
+    radius = min(FARTHEST, _radial_fold(c))
+    if all(getattr(c, name) == 0 for name in COEFFICIENTS if name not in RADIAL):
+        return radius
+    # Angles instead of radii, as a step in radius means less the farther out it is taken; and ever
+    # finer about the direction that folds first.
+    low, high, direction, reach = 0.0, math.atan(radius), 0.0, math.pi
+    for _ in range(5):
+        angles = np.linspace(low, high, 64)
+        directions = direction + np.linspace(-reach, reach, 180)
+        least = _least_eigenvalue(c, np.tan(angles)[:, None], directions)
+        falling = np.flatnonzero(~(least.min(axis=1) >= LEAST_SLOPE))
+        if not falling.size:
+            return math.tan(high)
+        low, high = angles[max(falling[0] - 2, 0)], angles[falling[0]]
+        direction, reach = directions[least[falling[0]].argmin()], reach / 20.0
+    return math.tan(low)
+
+
+def _radial_fold(c: SimpleNamespace) -> float:
+    """Where the slope d/dr of r N(r²)/M(r²) has come down to `LEAST_SLOPE`, or a pole, M = 0, is near."""
+    q = Polynomial([0.0, 1.0])
+    over, under = Polynomial([1.0, c.k1, c.k2, c.k3]), Polynomial([1.0, c.k4, c.k5, c.k6])
+    slope = over * under + 2.0 * q * (over.deriv() * under - over * under.deriv())
+    squares = [first_root(slope - LEAST_SLOPE * under**2)]
+    if first_root(under) < math.inf:
+        squares.append(first_root(slope - STEEPEST * under**2))
+    return math.sqrt(min(squares))
+
+
+def _least_eigenvalue(c: SimpleNamespace, radius: Any, direction: Any) -> Any:
+    """Least eigenvalue of the symmetric part of the Jacobian at points in polar coordinates."""
+    a, b = radius * np.cos(direction), radius * np.sin(direction)
+    p, q = distorted(as_jets(c), *variables(a, b), JetNamespace(NUMPY))
+    (pa, pb), (qa, qb) = p.partials, q.partials
+    return 0.5 * (pa + qb) - np.hypot(0.5 * (pa - qb), 0.5 * (pb + qa))

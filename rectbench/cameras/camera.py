@@ -1,0 +1,131 @@
+"""A calibrated camera: a projection model, its numbers, and the image's size."""
+
+from __future__ import annotations
+
+import math
+import operator
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from types import MappingProxyType, SimpleNamespace
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+import rectbench.cameras.models  # noqa: F401  (registers the projection models)
+from rectbench.cameras.arrays import BoolArray, Constants, FloatArray
+from rectbench.cameras.domain import PIXEL_SLACK, RAY_SLACK
+from rectbench.cameras.lens import lens_named
+from rectbench.cameras.parameters import checked_parameters
+from rectbench.cameras.projection import Projection, as_points
+from rectbench.errors import InvalidInput
+
+
+@dataclass(frozen=True, repr=False)
+class Camera(Projection):
+    """Pixels and rays of one lens on one image.
+
+    Parameters
+    ----------
+    model : name of the projection model, see `rectbench.cameras.lens.LENSES`.
+    size : (width, height) of the image in pixels.
+    params : the model's parameters by name; what is left out is 0. `fx fy cx cy` in pixels, pixel
+        (0, 0) being the centre of the top-left pixel; `poly` and `inverse_poly` of ocam are sequences.
+    max_angle_deg : angle from the axis beyond which the lens shows nothing (the image circle);
+        None where the model's own domain is the only bound.
+
+    Raises InvalidInput for a size, parameter or angle that makes no camera.
+    """
+
+    model: str
+    size: tuple[int, int]
+    params: Mapping[str, Any] = field(hash=False)
+    max_angle_deg: float | None = None
+
+    def __post_init__(self) -> None:
+        lens = lens_named(self.model)
+        object.__setattr__(self, "size", _checked_size(self.size))
+        object.__setattr__(self, "params", MappingProxyType(checked_parameters(lens, self.params)))
+        object.__setattr__(self, "max_angle_deg", _checked_angle(self.max_angle_deg))
+        _ = self.constants  # a lens that cannot be derived fails here, not at its first use
+
+    def __repr__(self) -> str:
+        limit = "" if self.max_angle_deg is None else f", max_angle_deg={self.max_angle_deg!r}"
+        return f"Camera({self.model!r}, {self.size!r}, {dict(self.params)!r}{limit})"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Camera, (self.model, self.size, dict(self.params), self.max_angle_deg)
+
+    @cached_property
+    def constants(self) -> Constants:
+        """Parameters and what the model derives from them, the edge of its domain included."""
+        derived = lens_named(self.model).derive(SimpleNamespace(**self.params))
+        limit = 180.0 if self.max_angle_deg is None else self.max_angle_deg
+        return {**self.params, **derived, "cos_max_angle": math.cos(math.radians(limit))}
+
+    @property
+    def width(self) -> int:
+        """Image width, pixels."""
+        return self.size[0]
+
+    @property
+    def height(self) -> int:
+        """Image height, pixels."""
+        return self.size[1]
+
+    def project_formula(self, c: Any, x: Any, y: Any, z: Any, xp: Any) -> tuple[Any, Any, Any]:
+        u, v, ok = lens_named(self.model).project(c, x, y, z, xp)
+        return u, v, ok & (z >= c.cos_max_angle * xp.sqrt(x * x + y * y + z * z) - RAY_SLACK)
+
+    def unproject_formula(self, c: Any, u: Any, v: Any, xp: Any) -> tuple[Any, Any, Any, Any]:
+        x, y, z, ok = lens_named(self.model).unproject(c, u, v, xp)
+        return x, y, z, ok & (z >= c.cos_max_angle - PIXEL_SLACK)
+
+    def contains(self, pixels: ArrayLike) -> BoolArray:
+        """Mask [...] of the pixels [..., 2] that lie on the image, its outer half pixels included."""
+        pixels = as_points(pixels, 2, "pixels")
+        u, v = pixels[..., 0], pixels[..., 1]
+        with np.errstate(invalid="ignore"):
+            inside: BoolArray = (u >= -0.5) & (u <= self.width - 0.5) & (v >= -0.5) & (v <= self.height - 0.5)
+        return inside
+
+    def sees(self, rays: ArrayLike) -> BoolArray:
+        """Mask [...] of the rays [..., 3] that land on the image."""
+        pixels, ok = self.project(rays)
+        return ok & self.contains(pixels)
+
+    def pixel_grid(self) -> FloatArray:
+        """The centres of all pixels, [height, width, 2]."""
+        u, v = np.meshgrid(np.arange(self.width, dtype=float), np.arange(self.height, dtype=float))
+        return np.stack([u, v], axis=-1)
+
+    def scaled(self, factor: float) -> Camera:
+        """The same lens on an image `factor` times as large (sizes rounded to whole pixels).
+
+        The image's corners stay where they are: with pixel centres at whole numbers, a coordinate
+        u becomes (u + 0.5) s - 0.5.
+        """
+        if not 0 < factor < math.inf:
+            raise InvalidInput(f"a camera was scaled by {factor!r}; expected a finite number above 0")
+        size = (max(1, round(self.width * factor)), max(1, round(self.height * factor)))
+        sx, sy = size[0] / self.width, size[1] / self.height
+        return replace(self, size=size, params=lens_named(self.model).scaled(self.params, sx, sy))
+
+
+def _checked_size(size: Any) -> tuple[int, int]:
+    try:
+        width, height = (operator.index(value) for value in size)
+    except (TypeError, ValueError):
+        raise InvalidInput(f"camera size is {size!r}; expected (width, height) in whole pixels") from None
+    if width < 1 or height < 1:
+        raise InvalidInput(f"camera size is {width}x{height}; expected at least 1x1 pixels")
+    return width, height
+
+
+def _checked_angle(angle_deg: Any) -> float | None:
+    if angle_deg is None:
+        return None
+    if not isinstance(angle_deg, int | float | np.number) or not 0 < angle_deg <= 180:
+        raise InvalidInput(f"max_angle_deg is {angle_deg!r}; expected a number in (0, 180]")
+    return float(angle_deg)

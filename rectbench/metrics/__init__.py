@@ -1,0 +1,25 @@
+"""What a rectification is scored by: distortion, sampling, row error, coverage, order."""
+
+from rectbench.metrics.coverage import coverage, dense_pixels
+from rectbench.metrics.distortion import Distortion, distortion, distortion_of, log_distortion
+from rectbench.metrics.jacobians import Jacobians
+from rectbench.metrics.order import order
+from rectbench.metrics.rows import RowError, row_error
+from rectbench.metrics.sampling import every_pixel, per_pixel
+from rectbench.metrics.scoring import measure
+
+__all__ = [
+    "Distortion",
+    "Jacobians",
+    "RowError",
+    "coverage",
+    "dense_pixels",
+    "distortion",
+    "distortion_of",
+    "every_pixel",
+    "log_distortion",
+    "measure",
+    "order",
+    "per_pixel",
+    "row_error",
+]

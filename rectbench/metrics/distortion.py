@@ -1,0 +1,168 @@
+"""Resampling distortion: the paper's L under three protocols, and the scale-free one.
+
+Zhou, Dai and Li, section III-D. L is 1 for an image shrunk to nothing, and its scale-free
+companion has no such optimum; so the protocols stand side by side.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.optimize import least_squares
+
+from rectbench.cameras.arrays import FloatArray
+from rectbench.errors import InvalidInput
+from rectbench.metrics.jacobians import Jacobians, entries, finite, losses, singular_values
+from rectbench.rigs import Rig
+from rectbench.warps import Rectification
+
+Protocol = Literal["native", "rescaled", "stretched"]
+WEIGHTS = np.sqrt([1.0, 0.5, 0.5])
+"""Roots of the weights of area, ratio and skew: the paper's α1 = α2 = 0.5."""
+
+
+class Distortion(float):
+    """Mean distortion L per pixel over both images; a float, with its parts.
+
+    NaN where the rectification maps none of the pixels.
+    """
+
+    protocol: str
+    scales: tuple[float, float]
+    """(s_u, s_v) by which the rectified image was scaled under the protocol."""
+    terms: Mapping[str, float]
+    """Means of `area`, `ratio` and `skew`, weights included: they sum to L."""
+    per_pixel: Mapping[str, FloatArray]
+    """L of each pixel by side, `left` [N] and `right` [M]; NaN where a pixel is not mapped."""
+    valid_share: float
+    """Share of the pixels that the rectification maps."""
+
+    @property
+    def mean(self) -> float:
+        """The value itself."""
+        return float(self)
+
+    @property
+    def median(self) -> float:
+        """Median over the mapped pixels of both images."""
+        return self._quantile(0.5)
+
+    @property
+    def p95(self) -> float:
+        """95th percentile over the mapped pixels of both images."""
+        return self._quantile(0.95)
+
+    def _quantile(self, share: float) -> float:
+        values = finite(np.concatenate([self.per_pixel["left"], self.per_pixel["right"]]))
+        return float(np.quantile(values, share)) if values.size else math.nan
+
+
+def distortion(
+    rect: Rectification, rig: Rig, pixels: ArrayLike | None = None, protocol: Protocol = "native"
+) -> Distortion:
+    """Mean of (S-1)² + ½(|w1|-|w2|)² + ½(w1·w2)² over pixels of both images.
+
+    Parameters
+    ----------
+    rect : the rectification to score.
+    rig : the rig whose images it warps; only its cameras matter, and they must be the warps' own.
+    pixels : [N, 2] source pixels, used for both images; None means each image's ~500.
+    protocol : `native` as the method scales it; `rescaled` by the single factor with the least L;
+        `stretched` by the factors of û and of v̂ with the least L.
+    """
+    if (rig.left.size, rig.right.size) != (rect.left.source.size, rect.right.source.size):
+        raise InvalidInput(f"the rectification is not one of rig {rig.name}: their image sizes differ")
+    return distortion_of(Jacobians.at(rect, pixels), protocol)
+
+
+def no_scale(J: FloatArray) -> tuple[float, float]:
+    """The scales of the native protocol."""
+    return 1.0, 1.0
+
+
+def distortion_of(jacobians: Jacobians, protocol: Protocol = "native") -> Distortion:
+    """The distortion of Jacobians already computed; see `distortion`."""
+    if protocol not in PROTOCOLS:
+        raise InvalidInput(f"protocol is {protocol!r}; expected one of {', '.join(PROTOCOLS)}")
+    both = jacobians.both
+    scales = PROTOCOLS[protocol](both)
+    per_pixel = {
+        side: _terms(getattr(jacobians, side) * np.array(scales)[:, None]) for side in ("left", "right")
+    }
+    terms = _terms(both * np.array(scales)[:, None])
+    score = Distortion(terms.sum(axis=0).mean() if len(both) else math.nan)
+    score.protocol, score.scales, score.valid_share = protocol, scales, jacobians.valid_share
+    score.terms = dict(zip(("area", "ratio", "skew"), map(float, _mean(terms)), strict=True))
+    score.per_pixel = {side: values.sum(axis=0) for side, values in per_pixel.items()}
+    return score
+
+
+def _terms(J: FloatArray) -> FloatArray:
+    """Weighted area, ratio and skew losses [3, N] of Jacobians [N, 2, 2]."""
+    return _residuals(J) ** 2
+
+
+def _residuals(J: FloatArray) -> FloatArray:
+    weighted: FloatArray = WEIGHTS[:, None] * losses(*entries(J), np)
+    return weighted
+
+
+def _mean(values: FloatArray) -> FloatArray:
+    return values.mean(axis=-1) if values.shape[-1] else np.full(values.shape[:-1], math.nan)
+
+
+def best_scale(J: FloatArray) -> tuple[float, float]:
+    """The single scale s with the least L, twice.
+
+    L(s) = mean[(s² S - 1)² + s² r + s⁴ k] is a parabola in s², so its minimum is in closed form.
+    """
+    if not len(J):
+        return 1.0, 1.0
+    S = losses(*entries(J), np)[0] + 1
+    _, ratio, skew = _terms(J)
+    square = (2 * S.mean() - ratio.mean()) / (2 * (np.square(S).mean() + skew.mean()))
+    scale = math.sqrt(max(0.0, float(square)))
+    return scale, scale
+
+
+def best_stretch(J: FloatArray) -> tuple[float, float]:
+    """The scales (s_u, s_v) with the least L, the same for both images."""
+    scale, _ = best_scale(J)
+    if not (len(J) and scale > 0):
+        return scale, scale
+
+    def stretched(logs: FloatArray) -> FloatArray:
+        return _residuals(J * np.exp(logs)[:, None]).ravel()
+
+    s_u, s_v = map(float, np.exp(least_squares(stretched, np.log([scale, scale]), method="lm").x))
+    return s_u, s_v
+
+
+PROTOCOLS: Mapping[Protocol, Callable[[FloatArray], tuple[float, float]]] = {
+    "native": no_scale,
+    "rescaled": best_scale,
+    "stretched": best_stretch,
+}
+
+
+def log_distortion(jacobians: Jacobians) -> dict[str, float]:
+    """RMS of log σ1 and log σ2 after their common mean over both images is removed, and its split.
+
+    `log_distortion`² = `log_distortion_area`² + `log_distortion_anisotropy`²: what changes in size
+    from place to place, and what is squeezed. No scale of the image changes it, collapse included.
+    """
+    large, small = singular_values(*entries(jacobians.both), np)
+    if not large.size or not (small > 0).all():
+        return dict.fromkeys(("log_distortion", "log_distortion_area", "log_distortion_anisotropy"), math.nan)
+    size = (np.log(large) + np.log(small)) / 2
+    squeeze = (np.log(large) - np.log(small)) / 2
+    area, anisotropy = float(np.std(size)), float(np.sqrt(np.square(squeeze).mean()))
+    return {
+        "log_distortion": math.hypot(area, anisotropy),
+        "log_distortion_area": area,
+        "log_distortion_anisotropy": anisotropy,
+    }

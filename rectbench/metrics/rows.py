@@ -1,0 +1,65 @@
+"""Row error: how far from one common row the two images of a point end up."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from rectbench.cameras.arrays import FloatArray
+from rectbench.cameras.projection import as_points
+from rectbench.errors import InvalidInput
+from rectbench.metrics.coverage import in_frame
+from rectbench.metrics.jacobians import finite
+from rectbench.warps import Rectification
+
+
+@dataclass(frozen=True, eq=False)
+class RowError:
+    """|v̂_left - v̂_right| of correspondences; NaN for those that do not land in both images."""
+
+    rectified_px: FloatArray
+    """[N], pixels of the rectified image."""
+    source_px: FloatArray
+    """[N], divided by the mean |∇v̂| of the two images: shrinking an image shrinks only the first."""
+
+    def columns(self) -> dict[str, float]:
+        """The row error columns of a result row."""
+        errors, in_source = finite(self.rectified_px), finite(self.source_px)
+        summary = dict.fromkeys(
+            (
+                *(f"row_error_{name}_px" for name in ("mean", "median", "rms", "p95", "max")),
+                "row_error_below_1px",
+                "row_error_source_mean_px",
+                "row_error_source_p95_px",
+            ),
+            math.nan,
+        )
+        if errors.size:
+            summary = {
+                "row_error_mean_px": float(errors.mean()),
+                "row_error_median_px": float(np.median(errors)),
+                "row_error_rms_px": float(np.sqrt(np.square(errors).mean())),
+                "row_error_p95_px": float(np.quantile(errors, 0.95)),
+                "row_error_max_px": float(errors.max()),
+                "row_error_below_1px": float((errors <= 1).mean()),
+                "row_error_source_mean_px": float(in_source.mean()),
+                "row_error_source_p95_px": float(np.quantile(in_source, 0.95)),
+            }
+        return {**summary, "row_error_matches": float(errors.size)}
+
+
+def row_error(rect: Rectification, px_left: ArrayLike, px_right: ArrayLike) -> RowError:
+    """Row error of the correspondences px_left ↔ px_right, [N, 2] source pixels each."""
+    left, right = as_points(px_left, 2, "px_left"), as_points(px_right, 2, "px_right")
+    if left.shape != right.shape:
+        raise InvalidInput(f"px_left has shape {left.shape}, px_right {right.shape}; expected the same")
+    mapped = rect.left.forward(left), rect.right.forward(right)
+    shown = in_frame(mapped[0], rect.size) & in_frame(mapped[1], rect.size)
+    error = np.where(shown, np.abs(mapped[0][..., 1] - mapped[1][..., 1]), np.nan)
+    gradients = [
+        np.hypot(J[..., 1, 0], J[..., 1, 1]) for J in (rect.left.jacobian(left), rect.right.jacobian(right))
+    ]
+    return RowError(error, error / ((gradients[0] + gradients[1]) / 2))

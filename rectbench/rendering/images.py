@@ -1,0 +1,143 @@
+"""Radiance to pictures, and the pair of pictures."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from rectbench.errors import InvalidInput
+from rectbench.rendering.variant import drjit, mitsuba
+from rectbench.rigs.rig import Rig
+
+Image = NDArray[np.uint8]
+
+SAMPLES_AT_ONCE = 1 << 24
+"""Samples in flight: 16 B of radiance each, and no more than that is kept whatever the image's size."""
+
+
+def radiance(
+    scene: Any, sensor: Any, integrator: Any, *, spp: int, seed: int, brightest: float = np.inf
+) -> NDArray[np.float32]:
+    """Mean radiance [H, W, 3] of `spp` samples a pixel, box-filtered, each sample held to `brightest`.
+
+    A pixel's samples are spread over it on a jittered grid. Bands of whole rows are rendered one
+    after another, so the memory is bounded; each pixel adds its samples in a fixed order, so the
+    same call gives the same bits on any number of threads. `spp` is a power of two.
+    """
+    mi, dr = mitsuba(), drjit()
+
+    width, height = (int(n) for n in sensor.film().size())
+    rows = max(1, SAMPLES_AT_ONCE // (width * spp))
+    image = np.empty((height, width, 3), dtype=np.float32)
+    sampler = mi.load_dict({"type": "independent", "sample_count": spp})
+    for top in range(0, height, rows):
+        bottom = min(top + rows, height)
+        count = (bottom - top) * width * spp
+        sampler.seed(mi.UInt32(dr.opaque(mi.UInt32, _band_seed(seed, top))), count)
+        position = _film_positions(sampler, count, top, (width, height), spp)
+        ray, weight = sensor.sample_ray_differential(mi.Float(0.0), mi.Float(0.5), position, mi.Point2f(0.5))
+        colour, _, _ = integrator.sample(scene, sampler, ray)
+        ceiling = dr.opaque(mi.Float, brightest)
+        colour = dr.select(dr.all(dr.isfinite(colour)), weight * dr.minimum(colour, ceiling), 0.0)
+        dr.eval(colour)
+        sums = [dr.block_sum(channel, spp).numpy() for channel in colour]
+        image[top:bottom] = np.stack(sums, axis=-1).reshape(bottom - top, width, 3) / spp
+    return image
+
+
+def _film_positions(sampler: Any, count: int, top: int, size: tuple[int, int], spp: int) -> Any:
+    """Positions in [0, 1]^2 of `count` samples of the rows from `top` on, a pixel's samples in a row."""
+    mi, dr = mitsuba(), drjit()
+
+    def opaque(number: int) -> Any:
+        # As literals these would be baked into the kernel: every image size would compile anew.
+        return dr.opaque(mi.UInt32, number)
+
+    bits = spp.bit_length() - 1
+    across_bits = (bits + 1) // 2
+    index = dr.arange(mi.UInt32, count)
+    pixel = opaque(top * size[0]) + (index >> opaque(bits))
+    row = pixel // opaque(size[0])
+    column = pixel - row * opaque(size[0])
+    cell = index & opaque(spp - 1)
+    cell_row = cell >> opaque(across_bits)
+    cell_column = cell - (cell_row << opaque(across_bits))
+    cells = dr.opaque(mi.Vector2f, (1 << across_bits, 1 << (bits - across_bits)))
+    within = (mi.Point2f(cell_column, cell_row) + sampler.next_2d()) / cells
+    return (mi.Point2f(column, row) + within) / dr.opaque(mi.Vector2f, size)
+
+
+def _band_seed(seed: int, top: int) -> int:
+    return int(np.random.SeedSequence([seed, top]).generate_state(1)[0])
+
+
+def srgb8(linear: NDArray[Any], exposure: float = 1.0) -> Image:
+    """Linear radiance as 8-bit sRGB (IEC 61966-2-1); radiance 1 / exposure is white."""
+    x = np.clip(np.asarray(linear, dtype=np.float32) * exposure, 0.0, 1.0)
+    y = np.where(x <= 0.0031308, 12.92 * x, 1.055 * x ** (1 / 2.4) - 0.055)
+    image: Image = (y * 255.0 + 0.5).astype(np.uint8)
+    return image
+
+
+@dataclass(frozen=True, eq=False)
+class StereoPair:
+    """The images of a rig: `left`, `right` uint8 sRGB [H, W, 3], each of its camera's size.
+
+    Raises InvalidInput for an array that is no such image.
+    """
+
+    left: Image
+    right: Image
+
+    def __post_init__(self) -> None:
+        for side in ("left", "right"):
+            image = np.asarray(getattr(self, side))
+            if image.dtype != np.uint8 or image.ndim != 3 or image.shape[2] != 3 or image.size == 0:
+                raise InvalidInput(f"{side} image is {image.dtype} {image.shape}; expected uint8 [H, W, 3]")
+            object.__setattr__(self, side, image)
+
+    def check(self, rig: Rig) -> None:
+        """Raise InvalidInput where an image's size is not its camera's."""
+        for side in ("left", "right"):
+            height, width = getattr(self, side).shape[:2]
+            camera = getattr(rig, side)
+            if (width, height) != camera.size:
+                raise InvalidInput(
+                    f"{side} image is {width}x{height}; expected {camera.width}x{camera.height}, "
+                    f"the size of rig {rig.name}'s camera"
+                )
+
+    def save(self, folder: str | Path) -> None:
+        """Write left.png and right.png into a folder, which is made where it does not exist."""
+        folder = Path(folder)
+        folder.mkdir(parents=True, exist_ok=True)
+        for side in ("left", "right"):
+            cv2.imwrite(str(folder / f"{side}.png"), cv2.cvtColor(getattr(self, side), cv2.COLOR_RGB2BGR))
+
+    @classmethod
+    def load(cls, folder: str | Path, rig: Rig | None = None) -> StereoPair:
+        """Read left.png and right.png of a folder; with a rig, their sizes are checked against it."""
+        return cls.read(Path(folder) / "left.png", Path(folder) / "right.png", rig)
+
+    @classmethod
+    def read(cls, left: str | Path, right: str | Path, rig: Rig | None = None) -> StereoPair:
+        """Read two image files; with a rig, their sizes are checked against it."""
+        pair = cls(_read(Path(left)), _read(Path(right)))
+        if rig is not None:
+            pair.check(rig)
+        return pair
+
+
+def _read(path: Path) -> Image:
+    if not path.is_file():
+        raise InvalidInput(f"{path}: no such image")
+    image = cv2.imread(str(path), cv2.IMREAD_COLOR)
+    if image is None:
+        raise InvalidInput(f"{path}: not an image that OpenCV can read")
+    colours: Image = np.asarray(cv2.cvtColor(image, cv2.COLOR_BGR2RGB), dtype=np.uint8)
+    return colours

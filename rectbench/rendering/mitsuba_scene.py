@@ -1,0 +1,194 @@
+"""A World as a Mitsuba scene.
+
+Two flavours: `path_scene` has real emitters for Mitsuba's path integrator; `fast_scene` has none,
+because `rectbench.rendering.integrator` does the lighting itself, and then every scene, indoors and
+out, runs on the same compiled kernel.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rectbench.cameras.arrays import FloatArray
+from rectbench.errors import InvalidResult
+from rectbench.rendering.variant import mitsuba
+from rectbench.rendering.world import Lamp, Material, Mesh, World
+
+SUN_APERTURE_DEG = 0.53
+
+LAMP_OFFSET = 1.0
+"""The fast scene has no emitters: a lamp is a surface of reflectance LAMP_OFFSET + radiance, above
+what any real surface has."""
+
+
+def path_scene(world: World) -> Any:
+    """The `mi.Scene` of a world with its sun and sky, lamps and ambient light as emitters."""
+    mi = mitsuba()
+    scene = _geometry(world, _path_bsdf)
+    for i, lamp in enumerate(world.lamps):
+        scene[f"lamp-{i}"] = {
+            "type": "rectangle",
+            "to_world": mi.ScalarTransform4f(_lamp_pose(lamp)),
+            "bsdf": {"type": "diffuse", "reflectance": {"type": "rgb", "value": 0.5}},
+            "emitter": {"type": "area", "radiance": {"type": "rgb", "value": list(lamp.radiance)}},
+        }
+    if world.sun is not None:
+        scene["sky"] = {
+            "type": "sunsky",
+            "sun_direction": list(world.sun.direction),
+            "turbidity": world.sun.turbidity,
+            "sun_aperture": SUN_APERTURE_DEG,
+        }
+    elif any(world.ambient):
+        scene["ambient"] = {"type": "constant", "radiance": {"type": "rgb", "value": list(world.ambient)}}
+    return _load(scene)
+
+
+def fast_scene(world: World) -> Any:
+    """The `mi.Scene` of a world without emitters, for `rectbench.rendering.integrator`."""
+    mi = mitsuba()
+    scene = _geometry(world, _fast_bsdf)
+    for i, lamp in enumerate(world.lamps):
+        glow = np.add(lamp.radiance, LAMP_OFFSET).astype(np.float32)
+        scene[f"lamp-{i}"] = {
+            "type": "rectangle",
+            "to_world": mi.ScalarTransform4f(_lamp_pose(lamp)),
+            "bsdf": {"type": "diffuse", "reflectance": _texture(glow.reshape(1, 1, 3))},
+        }
+    return _load(scene)
+
+
+def _load(scene: dict[str, Any]) -> Any:
+    # Loading in parallel, or merging identical objects, leaves their order to chance.
+    return mitsuba().load_dict(scene, parallel=False, optimize=False)
+
+
+def _geometry(world: World, bsdf_of: Callable[[Material], dict[str, Any]]) -> dict[str, Any]:
+    """All meshes and instances; meshes that share a Material object share its BSDF and texture."""
+    mi = mitsuba()
+    bsdfs: dict[int, Any] = {}
+    for mesh in _meshes(world):
+        if id(mesh.material) not in bsdfs:
+            _check_material(mesh.material, mesh.name)
+            bsdfs[id(mesh.material)] = mi.load_dict(bsdf_of(mesh.material), optimize=False)
+
+    def shape(mesh: Mesh) -> Any:
+        return _mesh(mesh, bsdfs[id(mesh.material)])
+
+    scene: dict[str, Any] = {"type": "scene"}
+    for i, mesh in enumerate(world.meshes):
+        scene[f"mesh-{i}"] = shape(mesh)
+    for i, instances in enumerate(world.instances):
+        group = {f"mesh-{j}": shape(mesh) for j, mesh in enumerate(instances.meshes)}
+        scene[f"group-{i}"] = {"type": "shapegroup", **group}
+        for j, placement in enumerate(_checked_placements(instances.placements, instances.name)):
+            scene[f"instance-{i}-{j}"] = {
+                "type": "instance",
+                "shapegroup": {"type": "ref", "id": f"group-{i}"},
+                "to_world": mi.ScalarTransform4f(placement),
+            }
+    return scene
+
+
+def _meshes(world: World) -> Iterator[Mesh]:
+    yield from world.meshes
+    for instances in world.instances:
+        yield from instances.meshes
+
+
+def _mesh(mesh: Mesh, bsdf: Any) -> Any:
+    mi = mitsuba()
+    vertices, faces, uv = _checked_mesh(mesh)
+    properties = mi.Properties()
+    properties["bsdf"] = bsdf
+    loaded = mi.Mesh(
+        mesh.name,
+        len(vertices),
+        len(faces),
+        has_vertex_normals=False,
+        has_vertex_texcoords=True,
+        props=properties,
+    )
+    buffers = mi.traverse(loaded)
+    buffers["vertex_positions"] = vertices.ravel()
+    buffers["faces"] = faces.ravel()
+    buffers["vertex_texcoords"] = uv.ravel()
+    buffers.update()
+    return loaded
+
+
+def _path_bsdf(material: Material) -> dict[str, Any]:
+    if material.glossy:
+        surface = {"type": "plastic", "diffuse_reflectance": _reflectance(material)}
+    else:
+        surface = {"type": "diffuse", "reflectance": _reflectance(material)}
+    return {"type": "twosided", "surface": surface}
+
+
+def _fast_bsdf(material: Material) -> dict[str, Any]:
+    # The integrator turns normals to the eye by itself, which spares it a second virtual call.
+    if material.glossy:
+        return {"type": "plastic", "diffuse_reflectance": _reflectance(material)}
+    return {"type": "diffuse", "reflectance": _reflectance(material)}
+
+
+def _reflectance(material: Material) -> dict[str, Any]:
+    texels = np.asarray(material.reflectance, dtype=np.float32)
+    # A plain colour is a texture of one texel: one kind of texture means one kernel for all scenes.
+    return _texture(texels.reshape(1, 1, 3) if texels.ndim == 1 else texels)
+
+
+def _texture(texels: NDArray[np.float32]) -> dict[str, Any]:
+    mi = mitsuba()
+    return {
+        "type": "bitmap",
+        "data": mi.TensorXf(np.ascontiguousarray(texels)),
+        "raw": True,
+        "filter_type": "bilinear",
+        "wrap_mode": "repeat",
+    }
+
+
+def _lamp_pose(lamp: Lamp) -> FloatArray:
+    """World from Mitsuba's rectangle [-1, 1]^2, whose normal +z is turned down."""
+    pose = np.diag([lamp.size_m[0] / 2, -lamp.size_m[1] / 2, -1.0, 1.0])
+    pose[:3, 3] = lamp.centre
+    return pose
+
+
+def _checked_mesh(mesh: Mesh) -> tuple[NDArray[np.float32], NDArray[np.uint32], NDArray[np.float32]]:
+    """The buffers of a mesh; an index out of range would crash the process inside Embree."""
+    vertices = np.asarray(mesh.vertices, dtype=np.float32)
+    faces, uv = np.asarray(mesh.faces), np.asarray(mesh.uv, dtype=np.float32)
+    if vertices.ndim != 2 or vertices.shape[1] != 3 or not np.isfinite(vertices).all():
+        raise InvalidResult(f"mesh {mesh.name}: vertices {vertices.shape} are not finite [V, 3]")
+    if faces.ndim != 2 or faces.shape[1] != 3 or not np.issubdtype(faces.dtype, np.integer):
+        raise InvalidResult(
+            f"mesh {mesh.name}: faces are {faces.dtype} {faces.shape}; expected integers [F, 3]"
+        )
+    if faces.size and (faces.min() < 0 or faces.max() >= len(vertices)):
+        raise InvalidResult(f"mesh {mesh.name}: a face names a vertex outside 0..{len(vertices) - 1}")
+    if uv.shape != (len(vertices), 2) or not np.isfinite(uv).all():
+        raise InvalidResult(f"mesh {mesh.name}: uv {uv.shape} is not finite [{len(vertices)}, 2]")
+    return vertices, faces.astype(np.uint32), uv
+
+
+def _check_material(material: Material, mesh: str) -> None:
+    texels = np.asarray(material.reflectance)
+    if texels.shape != (3,) and (texels.ndim != 3 or texels.shape[2] != 3 or 0 in texels.shape):
+        raise InvalidResult(
+            f"mesh {mesh}: reflectance has shape {texels.shape}; expected a colour or [H, W, 3]"
+        )
+    if not np.isfinite(texels).all() or texels.min() < 0 or texels.max() > 1:
+        raise InvalidResult(f"mesh {mesh}: reflectance leaves [0, 1] or is not finite")
+
+
+def _checked_placements(placements: FloatArray, name: str) -> FloatArray:
+    poses = np.asarray(placements, dtype=np.float64)
+    if poses.ndim != 3 or poses.shape[1:] != (4, 4) or not np.isfinite(poses).all():
+        raise InvalidResult(f"instances {name}: placements {poses.shape} are not finite [K, 4, 4]")
+    return poses

@@ -1,0 +1,81 @@
+"""A user's Mitsuba .xml scene as a world for a rig to stand in."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from rectbench.cameras.arrays import FloatArray
+from rectbench.errors import InvalidInput
+from rectbench.rendering import sensor
+
+POSE_TOLERANCE = 1e-4
+"""Largest entry of RᵀR - 1 in a pose: Mitsuba keeps its transforms in float32."""
+
+
+@dataclass(frozen=True, eq=False)
+class XmlWorld:
+    """A loaded .xml scene and where the left camera stands in it; made by `xml_world`."""
+
+    path: Path
+    scene: Any = field(repr=False)
+    """The `mi.Scene`."""
+    world_from_left: FloatArray
+    """[4, 4] pose of the left camera (x right, y down, z forward)."""
+    exposure: float = 1.0
+    """Factor from the scene's radiance to display, 1.0 being white."""
+
+
+def xml_world(
+    path: str | Path, world_from_left: ArrayLike | None = None, *, exposure: float = 1.0
+) -> XmlWorld:
+    """Read a Mitsuba .xml scene. Without `world_from_left`, its first sensor's pose is the left camera's.
+
+    The scene's own sensors, film and integrator are not rendered with; its shapes and lights are.
+    Raises InvalidInput for a file that Mitsuba cannot read, or a scene with no pose to stand at.
+    """
+    path = Path(path)
+    if not path.is_file():
+        raise InvalidInput(f"{path}: no such scene file")
+    if not exposure > 0 or not np.isfinite(exposure):
+        raise InvalidInput(f"exposure is {exposure}; expected a number above 0")
+    mi = sensor.register()
+    try:
+        scene = mi.load_file(str(path), optimize=False)
+    except Exception as error:  # Mitsuba's parsers and plugins raise whatever they like
+        raise InvalidInput(f"{path}: not a Mitsuba scene: {' '.join(str(error).split())}") from None
+    if not isinstance(scene, mi.Scene):
+        raise InvalidInput(f"{path}: holds a {type(scene).__name__}; expected a <scene>")
+    pose = (
+        _sensor_pose(scene, path) if world_from_left is None else np.array(world_from_left, dtype=np.float64)
+    )
+    return XmlWorld(path, scene, _checked_pose(pose, path), float(exposure))
+
+
+def _sensor_pose(scene: Any, path: Path) -> FloatArray:
+    """The pose of the scene's first sensor, in our axes and without the scale that a look-at may hold."""
+    if not scene.sensors():
+        raise InvalidInput(f"{path}: the scene has no sensor; expected one, or world_from_left")
+    matrix = np.array(scene.sensors()[0].world_transform().matrix, dtype=np.float64).reshape(4, 4)
+    matrix[:3, :3] /= np.linalg.norm(matrix[:3, :3], axis=0)
+    pose: FloatArray = matrix @ sensor.CV_FROM_MITSUBA
+    return pose
+
+
+def _checked_pose(pose: FloatArray, path: Path) -> FloatArray:
+    """The pose with its rotation made exactly orthonormal."""
+    ok = pose.shape == (4, 4) and np.isfinite(pose).all() and np.array_equal(pose[3], [0, 0, 0, 1])
+    if not ok or np.abs(pose[:3, :3].T @ pose[:3, :3] - np.eye(3)).max() > POSE_TOLERANCE:
+        raise InvalidInput(
+            f"{path}: the left camera's pose is no rigid motion; expected [4, 4] world from camera"
+        )
+    if np.linalg.det(pose[:3, :3]) < 0:
+        raise InvalidInput(f"{path}: the left camera's pose mirrors; expected a rotation")
+    u, _, vt = np.linalg.svd(pose[:3, :3])
+    rigid = pose.copy()
+    rigid[:3, :3] = u @ vt
+    return rigid

@@ -1,0 +1,203 @@
+"""Grouped bars of one metric: a panel a rig, a group a scene, a bar a method."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import product
+from typing import TYPE_CHECKING
+
+from rectbench.reporting.columns import column
+from rectbench.reporting.run_folder import Result, Run
+from rectbench.reporting.style import COLUMN_INCHES, FAINT, INK, PAGE_INCHES, looks, plain_log_ticks
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_LEAST_BAR_INCHES = 0.06
+_LABEL_BAR_INCHES = 0.075
+_LOG_FROM = 20.0
+
+
+@dataclass(frozen=True)
+class Bar:
+    """One method on one pair, over seeds: mean, least and largest value, or why there is none."""
+
+    mean: float | None
+    least: float | None
+    largest: float | None
+    failure: str
+
+
+@dataclass(frozen=True)
+class BarChart:
+    """All a chart shows, in the shown unit; `panels` maps title -> group -> method -> Bar."""
+
+    label: str
+    floor: float
+    reference: float | None
+    methods: tuple[str, ...]
+    panels: Mapping[str, Mapping[str, Mapping[str, Bar]]]
+
+
+def bar_chart(run: Run, key: str, pose: str, reference: float | None = None) -> BarChart:
+    """Collect a metric's bars; `reference` is a value worth a line, in the shown unit."""
+    shown_as = column(key)
+    panels: dict[str, dict[str, dict[str, Bar]]] = {}
+    for rig, motion in product(run.rigs, run.motions):
+        results = run.select(rig=rig, motion=motion, pose=pose)
+        title = f"{rig}, {motion}" if len(run.motions) > 1 else rig
+        groups = {
+            scene: {
+                method: _bar(run.select(cells, method=method), key, shown_as.scale)
+                for method in run.methods
+                if any(r.method == method for r in cells)
+            }
+            for scene in run.scenes
+            if (cells := run.select(results, scene=scene))
+        }
+        if groups:
+            panels[title] = groups
+    present = {m for groups in panels.values() for bars in groups.values() for m in bars}
+    methods = tuple(m for m in run.methods if m in present)
+    values = [b.largest for g in panels.values() for bars in g.values() for b in bars.values() if b.largest]
+    if reference is not None and not (values and 0.1 * reference < max(values)):
+        reference = None  # far above all bars: a line there would press them to the floor
+    return BarChart(shown_as.full_heading, shown_as.floor, reference, methods, panels)
+
+
+def _bar(results: Sequence[Result], key: str, scale: float) -> Bar:
+    values = [r.metrics[key] * scale for r in results if r.ok and math.isfinite(r.metrics.get(key, math.nan))]
+    failed = [r.status for r in results if not r.ok]
+    failure = failed[0] if failed else "no value" if len(values) < len(results) else ""
+    if not values:
+        return Bar(None, None, None, failure or "no value")
+    return Bar(sum(values) / len(values), min(values), max(values), failure)
+
+
+def draw_bars(chart: BarChart) -> Figure:
+    """Draw the chart: shared vertical axis, a cross with the status where a bar is missing."""
+    from matplotlib.figure import Figure
+
+    groups = max(len(panel) for panel in chart.panels.values())
+    slots = groups * (len(chart.methods) + 1)
+    small = len(chart.panels) == 1 and slots * _LABEL_BAR_INCHES < COLUMN_INCHES - 0.5
+    width = COLUMN_INCHES if small else PAGE_INCHES
+    columns = max(1, min(len(chart.panels), 4, int((width - 0.5) / (slots * _LEAST_BAR_INCHES))))
+    columns = math.ceil(len(chart.panels) / math.ceil(len(chart.panels) / columns))
+    rows = math.ceil(len(chart.panels) / columns)
+    figure = Figure(figsize=(width, 0.45 + 1.45 * rows + (0.18 if small else 0)), layout="constrained")
+    axes = figure.subplots(rows, columns, sharey=True, squeeze=False).ravel().tolist()
+    slot_inches = (width - 0.5) / columns / slots
+    log, (bottom, top) = _scale(chart)
+    for ax, (title, panel) in zip(axes, chart.panels.items(), strict=False):
+        _draw_panel(ax, chart, panel, bottom, slot_inches)
+        ax.set_title(title)
+    for ax in axes[: len(chart.panels)]:
+        ax.set_yscale("log" if log else "linear")
+        ax.set_ylim(bottom, top)
+        if log:
+            plain_log_ticks(ax.yaxis)
+        ax.grid(axis="y")
+        if chart.reference is not None:
+            ax.axhline(chart.reference, color=INK, linewidth=0.7, linestyle=(0, (4, 2)), zorder=1)
+    for ax in axes[len(chart.panels) :]:
+        ax.set_axis_off()
+    for ax in axes[: len(chart.panels) : columns]:
+        ax.set_ylabel(chart.label)
+    _add_legend(figure, chart, 3 if small else 6)
+    return figure
+
+
+def _scale(chart: BarChart) -> tuple[bool, tuple[float, float]]:
+    """Whether the axis is logarithmic, and its limits."""
+    bars = [b for panel in chart.panels.values() for group in panel.values() for b in group.values()]
+    largest = [max(b.largest, chart.floor) for b in bars if b.largest is not None]
+    least = [max(b.least, chart.floor) for b in bars if b.least is not None]
+    positive = [value for value in least + largest if value > 0]
+    if not positive:
+        return False, (0.0, 1.0)
+    low, high = min(positive), max(positive)
+    high = max(high, chart.reference or 0.0)
+    if high / low < _LOG_FROM:
+        return False, (0.0, high * 1.08)
+    bottom = 10.0 ** (math.floor(math.log10(low) - 0.15))
+    return True, (bottom, high * (high / bottom) ** 0.06)
+
+
+def _draw_panel(
+    ax: Axes,
+    chart: BarChart,
+    panel: Mapping[str, Mapping[str, Bar]],
+    bottom: float,
+    slot: float,
+) -> None:
+    colours = looks(chart.methods)
+    middle = (len(chart.methods) - 1) / 2
+    step = len(chart.methods) + 1
+    for g, bars in enumerate(panel.values()):
+        for m, method in enumerate(chart.methods):
+            if method not in bars:
+                continue
+            bar, x = bars[method], g * step + m - middle
+            if bar.mean is not None and bar.least is not None and bar.largest is not None:
+                height = max(bar.mean, chart.floor) - bottom
+                ax.bar(x, height, width=0.9, bottom=bottom, color=colours[method][0], linewidth=0)
+                if bar.largest > bar.least:
+                    span = [max(bar.least, chart.floor), max(bar.largest, chart.floor)]
+                    ax.plot([x, x], span, color=INK, linewidth=0.6, solid_capstyle="butt")
+            if bar.failure:
+                _mark_failure(ax, x, bar, colours[method][0] if bar.mean is None else INK, slot)
+    ax.set_xlim(-step / 2, (len(panel) - 0.5) * step)
+    longest = max(map(len, panel))
+    crowded = longest * 0.055 > slot * step
+    ax.set_xticks(
+        [g * step for g in range(len(panel))],
+        list(panel),
+        rotation=25 if crowded else 0,
+        ha="right" if crowded else "center",
+        rotation_mode="anchor" if crowded else "default",
+    )
+    ax.tick_params(axis="x", length=0)
+
+
+def _mark_failure(ax: Axes, x: float, bar: Bar, colour: str, slot: float) -> None:
+    """A cross at the foot of the gap, with the status beside it where it fits."""
+    at_foot = ax.get_xaxis_transform()
+    ax.plot(
+        [x],
+        [0.035],
+        marker="x",
+        markersize=3.2,
+        markeredgewidth=1.1,
+        color=colour,
+        transform=at_foot,
+        zorder=4,
+    )
+    if bar.mean is None and slot >= _LABEL_BAR_INCHES:
+        ax.text(
+            x,
+            0.09,
+            bar.failure,
+            transform=at_foot,
+            rotation=90,
+            size=5,
+            color=FAINT,
+            ha="center",
+            va="bottom",
+        )
+
+
+def _add_legend(figure: Figure, chart: BarChart, columns: int) -> None:
+    from matplotlib.artist import Artist
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
+    colours = looks(chart.methods)
+    handles: list[Artist] = [Patch(color=colours[m][0], label=m) for m in chart.methods]
+    if any(b.failure for panel in chart.panels.values() for group in panel.values() for b in group.values()):
+        cross = Line2D([], [], linestyle="", marker="x", markersize=3.2, color=INK, label="not measured")
+        handles.append(cross)
+    figure.legend(handles=handles, loc="outside upper center", ncols=min(columns, len(handles)))

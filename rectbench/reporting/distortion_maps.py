@@ -1,0 +1,124 @@
+"""Where in the image a method distorts: native L of every pixel, one colour scale for all methods."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rectbench.cameras import Camera
+from rectbench.cameras.arrays import FloatArray
+from rectbench.errors import RectbenchError
+from rectbench.reporting.numbers import three_digits
+from rectbench.reporting.panels import fit_into_box, panel_grid, write_head, write_message
+from rectbench.reporting.run_folder import Result
+from rectbench.reporting.sources import Side, Sources
+from rectbench.reporting.style import LOST, PAGE_INCHES, looks, plain_log_ticks
+from rectbench.rigs import Rig
+from rectbench.warps import Rectification
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.colors import LogNorm
+    from matplotlib.figure import Figure
+
+SAMPLES_ACROSS = 200
+_BAR_INCHES = 0.72
+_GAP = 0.02
+_LEAST_SHOWN = 1e-4
+_SIDES: tuple[Side, Side] = ("left", "right")
+
+
+@dataclass(frozen=True)
+class SideMap:
+    """L on a grid [h, w] of one image, NaN where lost; and where the lens shows anything."""
+
+    values: FloatArray
+    lens: NDArray[np.bool_]
+
+
+def draw_distortion_maps(sources: Sources, results: Sequence[Result], methods: Sequence[str]) -> Figure:
+    """A panel a method, left and right image in it, three panels to a row."""
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import LogNorm
+    from matplotlib.patches import Patch
+
+    _, truth = sources.pair(results[0])
+    panels = [(r, _maps(sources, r, truth.rig)) for r in results]
+    shown = [m for _, maps in panels if not isinstance(maps, str) for m in maps]
+    norm = LogNorm(*_limits(shown))
+    camera = truth.rig.left
+    figure, axes = panel_grid(len(panels), 3, camera.height / ((2 + _GAP) * camera.width), _BAR_INCHES)
+    colours = looks(methods)
+    for ax, (result, maps) in zip(axes, panels, strict=True):
+        colour, native = colours[result.method][0], result.metrics.get("distortion_native")
+        if isinstance(maps, str):
+            write_message(ax, maps, 46)
+            write_head(ax, result.method, colour=colour)
+        else:
+            _draw_panel(ax, maps, norm)
+            write_head(ax, result.method, "" if native is None else f"L = {three_digits(native)}", colour)
+    bar_ax = figure.add_axes((1 - 0.85 * _BAR_INCHES / PAGE_INCHES, 0.12, 0.1 / PAGE_INCHES, 0.7))
+    bar = figure.colorbar(ScalarMappable(norm, "viridis"), cax=bar_ax, extend="both")
+    plain_log_ticks(bar_ax.yaxis)
+    bar.set_label("distortion L of a pixel")
+    bar.outline.set_linewidth(0.4)
+    if any(np.isnan(m.values[m.lens]).any() for m in shown):
+        patch = Patch(facecolor=LOST, label="not mapped")
+        figure.legend(handles=[patch], loc="lower right", borderaxespad=0, fontsize=6)
+    return figure
+
+
+def _maps(sources: Sources, result: Result, rig: Rig) -> tuple[SideMap, SideMap] | str:
+    """The maps of both images, or the reason why there are none."""
+    if not result.ok:
+        return f"{result.status}: {result.reason}" if result.reason else result.status
+    try:
+        rect = sources.rectification(result)
+        left, right = (_side_map(sources, rect, rig, side) for side in _SIDES)
+    except Exception as error:  # a plugin's code runs here, and one picture is no reason to lose a report
+        return f"no picture: {error}" if isinstance(error, RectbenchError) else f"no picture: {error!r}"
+    return left, right
+
+
+def _side_map(sources: Sources, rect: Rectification, rig: Rig, side: Side) -> SideMap:
+    camera: Camera = getattr(rig, side)
+    across = min(SAMPLES_ACROSS, camera.width)
+    down = max(1, round(across * camera.height / camera.width))
+    u = (np.arange(across) + 0.5) * camera.width / across - 0.5
+    v = (np.arange(down) + 0.5) * camera.height / down - 0.5
+    pixels = np.stack(np.meshgrid(u, v), axis=-1).reshape(-1, 2)
+    values = sources.distortion(rect, rig, side, pixels).reshape(down, across)
+    return SideMap(values, camera.unproject(pixels)[1].reshape(down, across))
+
+
+def _limits(maps: Sequence[SideMap]) -> tuple[float, float]:
+    """Ends of the colour scale: whole powers of ten about the middle 96 % of all methods' pixels."""
+    values = np.concatenate([m.values[np.isfinite(m.values)] for m in maps]) if maps else np.empty(0)
+    values = values[values > 0]
+    if not values.size:
+        return _LEAST_SHOWN, 1.0
+    low, high = np.quantile(values, [0.02, 0.98])
+    bottom = 10.0 ** math.floor(math.log10(max(low, _LEAST_SHOWN)))
+    top = 10.0 ** math.ceil(math.log10(max(high, _LEAST_SHOWN)))
+    return bottom, max(top, 10 * bottom)
+
+
+def _draw_panel(ax: Axes, maps: tuple[SideMap, SideMap], norm: LogNorm) -> None:
+    from matplotlib import colormaps
+
+    colours = colormaps["viridis"].with_extremes(bad=LOST)
+    start = 0.0
+    for side in maps:
+        height, width = side.values.shape
+        shades = colours(norm(side.values))
+        shades[np.isnan(side.values)] = colours.get_bad()
+        shades[~side.lens] = (1.0, 1.0, 1.0, 1.0)
+        ax.imshow(shades, extent=(start, start + width, height, 0), interpolation="none", aspect="auto")
+        start += width * (1 + _GAP)
+    width, height = start - maps[1].values.shape[1] * _GAP, max(side.values.shape[0] for side in maps)
+    fit_into_box(ax, width, height)

@@ -1,0 +1,64 @@
+"""Numbers as text: three significant digits, no noise below what matters, never a bare NaN."""
+
+from __future__ import annotations
+
+import math
+
+from rectbench.reporting.columns import Column
+
+MISSING = "–"
+"""What stands where there is no number."""
+
+_SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+_FIXED_RANGE = (1e-3, 1e4)
+
+
+def shown(value: float | None, column: Column) -> str:
+    """The stored `value` of a column as a reader sees it, in the column's shown unit."""
+    if value is None or math.isnan(value):
+        return MISSING
+    scaled = value * column.scale
+    if math.isinf(scaled):
+        return "∞" if scaled > 0 else "−∞"
+    if column.is_percentage:
+        return _percentage(scaled)
+    if 0 <= scaled < column.floor:
+        return f"<{_power_of_ten(round(math.log10(column.floor)))}"
+    return three_digits(scaled)
+
+
+def three_digits(value: float) -> str:
+    """A finite value with three significant digits: 0.0123, 12.3, 1230, 1.23×10⁴."""
+    if value == 0:
+        return "0"
+    rounded = float(f"{value:.2e}")
+    if _FIXED_RANGE[0] <= abs(rounded) < _FIXED_RANGE[1]:
+        decimals = max(0, 2 - math.floor(math.log10(abs(rounded))))
+        return _with_minus(f"{rounded:.{decimals}f}")
+    mantissa, exponent = f"{rounded:.2e}".split("e")
+    return f"{_with_minus(mantissa)}×{_power_of_ten(int(exponent))}"
+
+
+def decade(value: float) -> str:
+    """A round value on a logarithmic axis: 0.001, 0.5, 20, 10⁴, 2×10⁵."""
+    mantissa, exponent = f"{value:.2e}".split("e")
+    if -3 <= int(exponent) <= 3:
+        return f"{value:g}"
+    power = _power_of_ten(int(exponent))
+    return power if float(mantissa) == 1 else f"{float(mantissa):g}×{power}"
+
+
+def _percentage(value: float) -> str:
+    if 0 < value < 0.05:
+        return "<0.1"
+    if 99.95 <= value < 100:
+        return ">99.9"
+    return _with_minus(f"{value:.1f}")
+
+
+def _power_of_ten(exponent: int) -> str:
+    return f"10{str(exponent).translate(_SUPERSCRIPTS)}"
+
+
+def _with_minus(text: str) -> str:
+    return text.replace("-", "−")

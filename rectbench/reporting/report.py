@@ -1,0 +1,78 @@
+"""Turns a run's folder into tables, figures and a page."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from rectbench.reporting.figures import EXTENSIONS, GROUPS, Progress, draw_changed, planned_figures
+from rectbench.reporting.page import render_page
+from rectbench.reporting.run_facts import wanted_groups
+from rectbench.reporting.run_folder import read_run
+from rectbench.reporting.sources import Sources, sources_of
+from rectbench.reporting.tables import SPELLINGS, Table
+from rectbench.reporting.tabulation import all_tables
+from rectbench.reporting.writing import write_atomically
+
+MANIFEST = "figures/manifest.json"
+"""What is drawn already, and which files earlier reports of this folder left."""
+
+
+def write_report(run_dir: Path, *, progress: Progress | None = None, sources: Sources | None = None) -> Path:
+    """Write tables/, figures/ and index.html of a run; returns the page's path.
+
+    Parameters
+    ----------
+    run_dir : a folder with run.json and results.parquet.
+    progress : called with (what comes next, figures done, figures in all).
+    sources : where pictures come from; the bench's store by default.
+
+    Figures whose data have not changed are left as they are. Files that an earlier report of the
+    same folder wrote and this one does not are removed. Where a picture's source is gone, the page
+    says so, and shows an earlier picture if there is one.
+
+    Raises InvalidInput where the folder holds no run, Unavailable where it cannot be written.
+    """
+    run_dir = Path(run_dir)
+    run = read_run(run_dir)
+    manifest = _read_manifest(run_dir)
+    tables = list(all_tables(run))
+    written = [path for table in tables for path in _write_table(run_dir, table)]
+    groups = wanted_groups(run)
+    plans = planned_figures(run, sources or sources_of(run), GROUPS if groups is None else groups)
+    drawn, digests = draw_changed(run, plans, manifest["figures"], progress)
+    written += [figure.plan.path(e) for figure in drawn if figure.there for e in EXTENSIONS]
+    _remove_leftovers(run_dir, set(manifest["files"]) - set(written))
+    write_atomically(run_dir / "index.html", render_page(run, tables, drawn))
+    fresh = {"figures": digests, "files": sorted(written)}
+    if fresh != manifest:
+        write_atomically(run_dir / MANIFEST, json.dumps(fresh, indent=1) + "\n")
+    if progress:
+        progress("done", len(plans), len(plans))
+    return run_dir / "index.html"
+
+
+def _write_table(folder: Path, table: Table) -> list[str]:
+    paths = []
+    for extension, spell in SPELLINGS.items():
+        path = f"tables/{table.name}.{extension}"
+        write_atomically(folder / path, spell(table))
+        paths.append(path)
+    return paths
+
+
+def _read_manifest(folder: Path) -> dict[str, Any]:
+    """The manifest, or an empty one where there is none that can be read."""
+    try:
+        manifest = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))
+        return {"figures": dict(manifest["figures"]), "files": [str(path) for path in manifest["files"]]}
+    except (OSError, ValueError, KeyError, TypeError):
+        return {"figures": {}, "files": []}
+
+
+def _remove_leftovers(folder: Path, paths: set[str]) -> None:
+    for path in sorted(paths):
+        place = (folder / path).resolve()
+        if place.parent in ((folder / "tables").resolve(), (folder / "figures").resolve()):
+            place.unlink(missing_ok=True)

@@ -1,0 +1,89 @@
+"""Where the pictures in a report come from: the bench's store, or whatever a caller provides."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any, Literal
+
+from rectbench.bench import recall
+from rectbench.bench.planning import CellTask, PairTask
+from rectbench.cameras.arrays import FloatArray
+from rectbench.errors import InvalidInput, RectbenchError
+from rectbench.metrics import distortion
+from rectbench.rendering.images import StereoPair
+from rectbench.rendering.truth import Truth
+from rectbench.reporting.run_folder import Result, Run
+from rectbench.rigs import Rig
+from rectbench.warps import Rectification
+
+Side = Literal["left", "right"]
+Identity = tuple[Any, ...]
+
+
+@dataclass(frozen=True)
+class Sources:
+    """How to get, for a cell, its images and truth, its rectification, and distortion at pixels.
+
+    Parameters
+    ----------
+    pair : the images and the truth of a cell.
+    rectification : the cell's rectification, fitted again.
+    distortion : native distortion [N] of a rectification at pixels [N, 2] of one side of a rig.
+    version : changes with whatever changes those answers while the cell's row stays the same.
+    """
+
+    pair: Callable[[Result], tuple[StereoPair, Truth]]
+    rectification: Callable[[Result], Rectification]
+    distortion: Callable[[Rectification, Rig, Side, FloatArray], FloatArray]
+    version: Callable[[Result], str] = lambda result: ""
+
+
+def sources_of(run: Run) -> Sources:
+    """The bench's store and the project's own metrics."""
+    recalled = _Recalled(run.folder)
+    return Sources(
+        pair=recalled.pair,
+        rectification=recalled.rectification,
+        distortion=lambda rect, rig, side, pixels: distortion(rect, rig, pixels).per_pixel[side],
+        version=recalled.version,
+    )
+
+
+class _Recalled:
+    """Cells of a finished run: each fitted once, the last pair kept, since several figures show them."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self._fitted: dict[Identity, Rectification] = {}
+        self._pair: tuple[PairTask, tuple[StereoPair, Truth]] | None = None
+
+    @cached_property
+    def _tasks(self) -> dict[Identity, CellTask]:
+        return recall.read_tasks(self._folder)
+
+    def _task(self, result: Result) -> CellTask:
+        task = self._tasks.get(recall.identity_of(result.row))
+        if task is None:
+            raise InvalidInput(f"{self._folder / 'run.json'} does not plan {result.method} on {result.pair}")
+        return task
+
+    def pair(self, result: Result) -> tuple[StereoPair, Truth]:
+        task = self._task(result)
+        if self._pair is None or self._pair[0] != task.pair:
+            self._pair = task.pair, recall.recalled_pair(task)
+        return self._pair[1]
+
+    def rectification(self, result: Result) -> Rectification:
+        key = recall.identity_of(result.row)
+        if key not in self._fitted:
+            self._fitted[key] = recall.recalled_rectification(self._task(result))
+        return self._fitted[key]
+
+    def version(self, result: Result) -> str:
+        try:
+            return recall.recalled_version(self._task(result))
+        except RectbenchError as error:  # a plugin or a rig that is not on this machine
+            return str(error)

@@ -1,0 +1,186 @@
+"""What the command line prints: tables for a person to read."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal, get_args, get_origin
+
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+if TYPE_CHECKING:
+    from rectbench.bench.comparing import Comparison
+    from rectbench.bench.conformance import Finding as CheckFinding
+    from rectbench.bench.doctor import Finding
+    from rectbench.bench.gating import Verdict
+
+WIDE = 200
+"""Columns assumed where the output is no terminal, so that a pipe gets whole lines."""
+
+SHOWN_DIFFERENCES = 40
+
+
+def console() -> Console:
+    """Standard output; never narrower than a table where nobody looks at it."""
+    screen = Console(highlight=False, soft_wrap=False)
+    return screen if screen.is_terminal else Console(highlight=False, width=WIDE)
+
+
+def show_names(kind: str, verbose: bool) -> None:
+    """The names of a kind with a line about each; below, the plugins that cannot be loaded."""
+    from rectbench.bench.plugins import registry
+
+    screen, table = console(), _table(kind)
+    broken: dict[str, str] = {}
+    if kind in ("methods", "scenes", "reports"):
+        found = registry(kind)
+        broken = found.broken
+        for plugin in found.plugins():
+            table.add_row(plugin.name, plugin.summary)
+            if verbose and kind == "methods":
+                _add_options(table, plugin.value)
+    else:
+        for name, summary in _described(kind):
+            table.add_row(name, summary)
+    screen.print(table)
+    for place, reason in broken.items():
+        screen.print(Text(f"  broken: {place}: {reason}", style="red"))
+    screen.print()
+
+
+def _described(kind: str) -> list[tuple[str, str]]:
+    from rectbench.rigs import MOTIONS, POSES, load_rig, rig_names
+
+    if kind == "motions":
+        return [(motion.name, motion.description) for motion in MOTIONS.values()]
+    if kind == "poses":
+        return [
+            (
+                name,
+                f"rotation off by {noise.rotation_deg:g}°, baseline by {noise.direction_deg:g}°",
+            )
+            for name, noise in POSES.items()
+        ]
+    rigs = [(name, load_rig(name)) for name in rig_names()]
+    return [
+        (name, f"{r.left.model}, {r.left.width}x{r.left.height}, baseline {1000 * r.baseline_m:.0f} mm")
+        for name, r in rigs
+    ]
+
+
+def _add_options(table: Table, method: Any) -> None:
+    for name, option in method.Options.model_fields.items():
+        limits = [_LIMITS[type(limit).__name__].format(limit) for limit in option.metadata]
+        kind = ", ".join([_kind_text(option.annotation), *limits, f"default {_plain(option.default)}"])
+        text = f"{option.description} ({kind})"
+        table.add_row(f"  --option {method.name}.{name}", text, style="dim")
+    for reference in method.references:
+        table.add_row("", reference, style="dim italic")
+
+
+_LIMITS = {"Gt": "> {0.gt}", "Ge": "≥ {0.ge}", "Lt": "< {0.lt}", "Le": "≤ {0.le}"}
+
+
+def _kind_text(annotation: Any) -> str:
+    """A type as a user writes its values: choices, or number, text, ..."""
+    if get_origin(annotation) is Literal:
+        return " | ".join(map(str, get_args(annotation)))
+    if get_args(annotation):
+        return " or ".join(_kind_text(part) for part in get_args(annotation))
+    names = {float: "number", int: "whole number", str: "text", bool: "true | false", type(None): "nothing"}
+    return names.get(annotation, str(annotation))
+
+
+def _plain(default: Any) -> str:
+    return "none" if default is None else str(default)
+
+
+def show_summary(folder: Path) -> None:
+    """The main tables of a run, and where its page is."""
+    from rectbench.reporting.run_folder import read_run
+    from rectbench.reporting.tabulation import main_tables
+
+    screen, found = console(), read_run(folder)
+    for summary in main_tables(found):
+        table = Table(title=summary.title, caption=" ".join([summary.caption, *summary.notes]))
+        for heading in summary.headings:
+            table.add_column(heading.text, justify="right" if heading.numeric else "left")
+        for section in summary.sections:
+            for row in section.rows:
+                table.add_row(*(Text(entry.text, style="bold" if entry.best else "") for entry in row))
+        screen.print(table)
+    for failure in found.failures:
+        cell = f"{failure.method} on {failure.scene}/{failure.rig}/{failure.motion}/{failure.pose}"
+        screen.print(Text(f"{failure.status}: {cell}: {failure.reason}", style="yellow"))
+    screen.print(f"{len(found.results)} cells; page: {folder / 'index.html'}", soft_wrap=True)
+
+
+def show_verdict(verdict: Verdict) -> None:
+    """What a gate found, worst first."""
+    screen = console()
+    for title, lines, style in (
+        ("regression", verdict.regressions, "red"),
+        ("incomplete", verdict.incomplete, "yellow"),
+        ("improvement", verdict.improvements, "green"),
+        ("new", verdict.new, "dim"),
+    ):
+        for line in lines:
+            screen.print(Text(f"{title}: {line}", style=style), soft_wrap=True)
+    answer = {0: "good", 1: "worse than accepted"}.get(verdict.exit_code, "incomplete or nothing measured")
+    screen.print(f"{verdict.compared} cells compared: {answer}")
+
+
+def show_comparison(comparison: Comparison, metrics: list[str] | None) -> None:
+    """The paired differences, a row a method and metric."""
+    screen, table = console(), _table("method", "metric", "pairs", "A", "B", "B - A", "95 % interval")
+    for row in comparison.table.to_dict("records"):
+        if metrics is not None and row["metric"] not in metrics:
+            continue
+        interval = "" if row["low"] != row["low"] else f"{row['low']:.3g} to {row['high']:.3g}"
+        numbers = (f"{row[name]:.5g}" for name in ("median_a", "median_b"))
+        table.add_row(
+            row["method"], row["metric"], str(row["pairs"]), *numbers, f"{row['difference']:+.3g}", interval
+        )
+    screen.print(table)
+    for line in comparison.unpaired[:SHOWN_DIFFERENCES]:
+        screen.print(Text(line, style="yellow"), soft_wrap=True)
+    if len(comparison.unpaired) > SHOWN_DIFFERENCES:
+        screen.print(f"... and {len(comparison.unpaired) - SHOWN_DIFFERENCES} more cells in one run alone")
+
+
+def show_checks(method: str, findings: Iterable[CheckFinding]) -> int:
+    """The conformance table; returns how many checks failed."""
+    screen, table, failed = console(), _table("rig", "check", "result", "found"), 0
+    styles = {"passed": "green", "failed": "bold red", "unsupported": "yellow"}
+    for finding in findings:
+        failed += finding.result == "failed"
+        result = Text(finding.result, style=styles[finding.result])
+        table.add_row(finding.rig, finding.check, result, Text(finding.detail))
+    screen.print(table)
+    screen.print(f"{method}: {failed} checks failed" if failed else f"{method}: all checks passed")
+    return failed
+
+
+def show_examination(findings: Iterable[Finding]) -> bool:
+    """The doctor's table; returns whether nothing that is needed is missing."""
+    screen, table, well = console(), _table("", "what", "found"), True
+    for finding in findings:
+        mark = {True: Text("ok", style="green"), False: Text("MISSING", style="bold red"), None: Text("-")}[
+            finding.ok
+        ]
+        table.add_row(mark, finding.name, Text(finding.text))
+        well = well and finding.ok is not False
+    screen.print(table)
+    screen.print("rectbench can run here" if well else "rectbench cannot run here")
+    return well
+
+
+def _table(*headings: str) -> Table:
+    """A plain table; a single heading stands above two columns, name and meaning."""
+    table = Table(box=None, pad_edge=False)
+    columns = headings if len(headings) > 1 else (*headings, "")
+    for heading in columns:
+        table.add_column(heading, header_style="bold", overflow="fold")
+    return table

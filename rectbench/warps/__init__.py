@@ -1,0 +1,37 @@
+"""Warps into the rectified frame, lookup tables, triangulation, and what a rectifier is."""
+
+from rectbench.warps.extent import ViewAngles, centre_rays, perspective_size, view_angles
+from rectbench.warps.frame import centre_resolution_px, rectifying_rotations, refuse_epipole_in_view
+from rectbench.warps.pinhole_view import HomographyRectifier, PinholeView
+from rectbench.warps.rectification import Rectification
+from rectbench.warps.rectifier import Images, Matches, Options, Problem, Rectifier, option, pose_problem
+from rectbench.warps.sampling import evaluation_pixels, outline_pixels
+from rectbench.warps.targets import Cubic, Epipolar, Perspective, Radial
+from rectbench.warps.warp import Warp
+
+__all__ = [
+    "Cubic",
+    "Epipolar",
+    "HomographyRectifier",
+    "Images",
+    "Matches",
+    "Options",
+    "Perspective",
+    "PinholeView",
+    "Problem",
+    "Radial",
+    "Rectification",
+    "Rectifier",
+    "ViewAngles",
+    "Warp",
+    "centre_rays",
+    "centre_resolution_px",
+    "evaluation_pixels",
+    "option",
+    "outline_pixels",
+    "perspective_size",
+    "pose_problem",
+    "rectifying_rotations",
+    "refuse_epipole_in_view",
+    "view_angles",
+]

@@ -1,0 +1,92 @@
+"""The epipolar frame: x along the baseline, in which a ray is the pair of angles (β, γ).
+
+    β = atan2(y, z)              the epipolar plane, equal in both images for one point
+    γ = atan2(x, hypot(y, z))    the place along the epipolar line
+
+(Zhou, Dai and Li, section III-B; with atan2, so that |β| may pass 90°.)
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from rectbench.cameras import Camera
+from rectbench.cameras.arrays import FloatArray
+from rectbench.errors import Unsupported
+from rectbench.rigs import Rig
+
+EDGE_STEP_RAD = 1e-6
+"""An epipole nearer to the edge of the view than this counts as lying on the edge, outside."""
+
+
+def rectifying_rotations(rig: Rig) -> tuple[FloatArray, FloatArray]:
+    """(R_rect_left, R_rect_right), camera to rectified frame, after Bouguet.
+
+    Each camera takes half the relative rotation; then the smallest rotation lays the baseline on
+    the x axis. The axis is taken as a line: a pair given right camera first keeps its images
+    upright, and has `signed_baseline_m` below zero.
+    """
+    half = Rotation.from_matrix(rig.R_right_left).as_rotvec() / 2
+    R_mid_left = Rotation.from_rotvec(half).as_matrix()
+    R_mid_right = Rotation.from_rotvec(-half).as_matrix()
+    baseline = R_mid_left @ rig.centre_right_in_left / rig.baseline_m
+    R_rect_mid = _smallest_rotation_onto_x(baseline)
+    return R_rect_mid @ R_mid_left, R_rect_mid @ R_mid_right
+
+
+def signed_baseline_m(rig: Rig) -> float:
+    """x of the right camera's centre in the left camera's rectified frame, metres."""
+    R_rect_left, _ = rectifying_rotations(rig)
+    return float((R_rect_left @ rig.centre_right_in_left)[0])
+
+
+def _smallest_rotation_onto_x(direction: FloatArray) -> FloatArray:
+    """The rotation of least angle that takes the line along `direction` to the x axis."""
+    # Of a vertical baseline both ends are equally near to x: rounding must not choose.
+    target = np.array([-1.0 if direction[0] < -1e-9 else 1.0, 0.0, 0.0])
+    w = np.cross(direction, target)
+    cross = np.array([[0, -w[2], w[1]], [w[2], 0, -w[0]], [-w[1], w[0], 0]])
+    rotation: FloatArray = np.eye(3) + cross + cross @ cross / (1 + direction @ target)
+    return rotation
+
+
+def angles(rays: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """(γ, β) in radians [...] of rays [..., 3] in the rectified frame."""
+    x, y, z = np.moveaxis(rays, -1, 0)
+    return np.atan2(x, np.hypot(y, z)), np.atan2(y, z)
+
+
+def refuse_epipole_in_view(rig: Rig) -> None:
+    """Raise Unsupported where an epipole lies inside the view of either camera.
+
+    All epipolar planes meet there, so that no map to scan lines can be continuous.
+    """
+    towards_right = rig.centre_right_in_left / rig.baseline_m
+    baselines = {"left": (rig.left, towards_right), "right": (rig.right, rig.R_right_left @ towards_right)}
+    for side, (camera, direction) in baselines.items():
+        for ray in (direction, -direction):
+            if _strictly_sees(camera, ray):
+                (u, v), _ = camera.project(ray)
+                raise Unsupported(
+                    f"an epipole of rig {rig.name} lies in the {side} view, at pixel "
+                    f"({u:.0f}, {v:.0f}) of {camera.width}x{camera.height}"
+                )
+
+
+def _strictly_sees(camera: Camera, ray: FloatArray) -> bool:
+    """Whether the ray lands between pixel centres, with the domain reaching a little beyond it."""
+    off_axis = np.array([ray[0], ray[1], 0.0])
+    outward = ray + EDGE_STEP_RAD * (off_axis / max(np.linalg.norm(off_axis), EDGE_STEP_RAD) - [0, 0, 1])
+    pixels, ok = camera.project(np.stack([ray, outward]))
+    inside = (pixels[0] >= 0).all() and (pixels[0] <= np.array(camera.size) - 1).all()
+    return bool(ok.all() and inside)
+
+
+def centre_resolution_px(rig: Rig) -> float:
+    """Pixels per radian on the optical axis, the mean of the two cameras."""
+    rates = [
+        np.sqrt(abs(np.linalg.det(camera.project_jacobian([0.0, 0.0, 1.0])[:, :2])))
+        for camera in (rig.left, rig.right)
+    ]
+    return float(np.mean(rates))

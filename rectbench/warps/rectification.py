@@ -1,0 +1,145 @@
+"""A rectified pair: two warps into one frame, with lookup tables, resampling and depth."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Literal
+
+import cv2
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rectbench.cameras.arrays import FloatArray
+from rectbench.cameras.projection import as_points
+from rectbench.errors import InvalidInput
+from rectbench.rigs import Rig
+from rectbench.warps.frame import rectifying_rotations, signed_baseline_m
+from rectbench.warps.tables import FloatMap, lookup_table
+from rectbench.warps.targets import Target
+from rectbench.warps.warp import Warp
+
+Side = Literal["left", "right"]
+LARGEST_SIDE_PX = 32766
+"""`cv2.remap` takes no larger image."""
+
+
+@dataclass(frozen=True, eq=False)
+class Rectification:
+    """What a rectifier returns: where each pixel of both images goes.
+
+    `rig` is the rig the rectifier believed in; depth is computed from it. `notes` are what the
+    method has to say of itself (energy, focal length, a warning), shown beside its row.
+    """
+
+    rig: Rig
+    left: Warp
+    right: Warp
+    size: tuple[int, int]
+    """(width, height) of both rectified images, pixels."""
+    notes: Mapping[str, float | str] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        width, height = (int(value) for value in self.size)
+        if not (1 <= width <= LARGEST_SIDE_PX and 1 <= height <= LARGEST_SIDE_PX):
+            raise InvalidInput(
+                f"the rectified image would be {width}x{height} px; expected 1 to {LARGEST_SIDE_PX} a side"
+            )
+        object.__setattr__(self, "size", (width, height))
+
+    @classmethod
+    def from_targets(
+        cls,
+        rig: Rig,
+        left: Target,
+        right: Target,
+        size: tuple[int, int],
+        notes: Mapping[str, float | str] | None = None,
+    ) -> Rectification:
+        """The usual case: both cameras turned into the rig's epipolar frame, then two targets."""
+        R_rect_left, R_rect_right = rectifying_rotations(rig)
+        warps = Warp(rig.left, R_rect_left, left), Warp(rig.right, R_rect_right, right)
+        return cls(rig, *warps, size, notes or {})
+
+    @property
+    def R_rect_left(self) -> FloatArray:
+        """Rectified from left camera frame [3, 3]."""
+        return self.left.R_rect_cam
+
+    @property
+    def R_rect_right(self) -> FloatArray:
+        """Rectified from right camera frame [3, 3]."""
+        return self.right.R_rect_cam
+
+    def warp(self, side: Side) -> Warp:
+        """The warp of one side, by name."""
+        if side not in ("left", "right"):
+            raise InvalidInput(f"side is {side!r}; expected 'left' or 'right'")
+        return self.left if side == "left" else self.right
+
+    def maps(self, side: Side) -> tuple[FloatMap, FloatMap]:
+        """(map_x, map_y) [height, width] float32 for `cv2.remap`.
+
+        Source pixels; those beyond the source image, or -16 where the lens sees nothing, read the
+        border colour.
+        """
+        return lookup_table(self.warp(side), self.size)
+
+    def valid(self, side: Side) -> NDArray[np.bool_]:
+        """Mask [height, width] of rectified pixels that read nothing but source pixels."""
+        map_x, map_y = self.maps(side)
+        w, h = self.warp(side).source.size
+        mask: NDArray[np.bool_] = (map_x >= 0) & (map_x <= w - 1) & (map_y >= 0) & (map_y <= h - 1)
+        return mask
+
+    def remap(
+        self,
+        left: NDArray[np.generic],
+        right: NDArray[np.generic],
+        interpolation: int = cv2.INTER_LINEAR,
+    ) -> tuple[NDArray[np.generic], NDArray[np.generic]]:
+        """Both images resampled into the rectified frame, black where the source shows nothing."""
+        return self._remap_one("left", left, interpolation), self._remap_one("right", right, interpolation)
+
+    def _remap_one(self, side: Side, image: NDArray[np.generic], interpolation: int) -> NDArray[np.generic]:
+        source = self.warp(side).source
+        if image.shape[:2] != (source.height, source.width):
+            raise InvalidInput(
+                f"the {side} image is {image.shape[1]}x{image.shape[0]} px; "
+                f"its camera has {source.width}x{source.height}"
+            )
+        resampled: NDArray[np.generic] = cv2.remap(
+            image, *self.maps(side), interpolation, borderMode=cv2.BORDER_CONSTANT
+        )
+        return resampled
+
+    def triangulate(self, px_rect: ArrayLike, disparity_px: ArrayLike) -> FloatArray:
+        """Points [..., 3] in the left camera's frame, metres, from disparities û_left - û_right.
+
+        `px_rect` [..., 2] are pixels of the rectified left image. The exact inverse of both warps
+        gives the two rays, the believed pose the triangle (the paper's equation for 3-D
+        reconstruction with atan2 in the place of arctan). NaN where the rays do not meet in front.
+        """
+        px_rect = as_points(px_rect, 2, "px_rect")
+        shift = np.stack(np.broadcast_arrays(np.asarray(disparity_px, dtype=float), 0.0), axis=-1)
+        rays_left = self._camera_rays(self.left, px_rect)
+        rays_right = self._camera_rays(self.right, px_rect - shift)
+        R_epi_left, R_epi_right = rectifying_rotations(self.rig)
+        x1, h1 = _along_and_off(rays_left @ R_epi_left.T)
+        x2, h2 = _along_and_off(rays_right @ R_epi_right.T)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            # r = b / (tan γ1 - tan γ2) with tan γ = x / h, times 1 / h1 for the length along the ray.
+            distance = signed_baseline_m(self.rig) * h2 / (x1 * h2 - x2 * h1)
+            distance = np.where(np.isfinite(distance) & (distance > 0), distance, np.nan)
+        points: FloatArray = rays_left * distance[..., None]
+        return points
+
+    @staticmethod
+    def _camera_rays(warp: Warp, px_rect: FloatArray) -> FloatArray:
+        rays: FloatArray = warp.target.unproject(px_rect)[0] @ warp.R_rect_cam
+        return rays
+
+
+def _along_and_off(rays: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Components of rays [..., 3] along the baseline and off it."""
+    return rays[..., 0], np.hypot(rays[..., 1], rays[..., 2])

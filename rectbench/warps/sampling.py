@@ -1,0 +1,59 @@
+"""Which pixels a method is fitted to and scored on: about 500, evenly, inside the image circle."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from rectbench.cameras import Camera
+from rectbench.cameras.arrays import FloatArray
+
+EVALUATION_PIXELS = 500
+"""The paper's "around 500 pixels evenly distributed all over the image" (section III-D)."""
+
+
+def evaluation_pixels(camera: Camera, count: int = EVALUATION_PIXELS) -> FloatArray:
+    """The fixed grid of about `count` pixels [N, 2], row by row.
+
+    Cells of a grid with the image's aspect, their centres; those the lens does not see are left
+    out, and the grid is made finer by their share, so that about `count` remain.
+    """
+    grid = _cell_centres(camera, count)
+    seen = camera.unproject(grid)[1]
+    if 0 < seen.mean() < 1:
+        grid = _cell_centres(camera, count / seen.mean())
+        seen = camera.unproject(grid)[1]
+    return grid[seen]
+
+
+def _cell_centres(camera: Camera, count: float) -> FloatArray:
+    across = max(1, round(math.sqrt(count * camera.width / camera.height)))
+    down = max(1, round(count / across))
+    u = (np.arange(across) + 0.5) * camera.width / across - 0.5
+    v = (np.arange(down) + 0.5) * camera.height / down - 0.5
+    return np.stack(np.meshgrid(u, v), axis=-1).reshape(-1, 2)
+
+
+def outline_pixels(camera: Camera) -> tuple[FloatArray, float]:
+    """Pixels [N, 2] whose images bound the view's image under any continuous map, and their spacing.
+
+    The rim of the image where the lens sees all of it; else a grid over the whole image too, since
+    the image circle's edge then bounds the view. The spacing in pixels tells how far the bound may
+    be off; it is 0 for the rim alone.
+    """
+    w, h = camera.width, camera.height
+    u, v = np.arange(2 * w + 1) / 2 - 0.5, np.arange(2 * h + 1) / 2 - 0.5
+    rim = np.concatenate(
+        [
+            np.stack(np.broadcast_arrays(*side), -1)
+            for side in ((u, -0.5), (u, h - 0.5), (-0.5, v), (w - 0.5, v))
+        ]
+    )
+    seen = camera.unproject(rim)[1]
+    if seen.all():
+        return rim, 0.0
+    spacing = max(1.0, max(w, h) / 256)
+    grid = np.stack(np.meshgrid(np.arange(-0.5, w, spacing), np.arange(-0.5, h, spacing)), -1).reshape(-1, 2)
+    inside = grid[camera.unproject(grid)[1]]
+    return np.concatenate([rim[seen], inside]), spacing

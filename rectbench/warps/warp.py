@@ -1,0 +1,104 @@
+"""One image's way into the rectified frame: source pixel → ray → rotation → rectified pixel."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+from numpy.typing import ArrayLike
+
+from rectbench.cameras import Camera
+from rectbench.cameras.arrays import Constants, FloatArray, evaluate_points
+from rectbench.cameras.projection import as_points, projected_partials
+from rectbench.warps.targets import Target
+
+
+@dataclass(frozen=True, eq=False)
+class Warp:
+    """Target ∘ R_rect_cam ∘ Φ⁻¹: the paper's H = Ψ ∘ R ∘ Φ (section III), exactly invertible."""
+
+    source: Camera
+    R_rect_cam: FloatArray = field(repr=False)
+    """[3, 3], from the camera's frame to the rectified one."""
+    target: Target
+
+    @property
+    def constants(self) -> Constants:
+        """The numbers in the warp's formulas."""
+        rows = tuple(tuple(map(float, row)) for row in self.R_rect_cam)
+        return {"source": self.source.constants, "R": rows, "target": self.target.constants}
+
+    def forward(self, px: ArrayLike) -> FloatArray:
+        """Rectified pixels [..., 2] of source pixels [..., 2]; NaN where there is none."""
+        return evaluate_points(self._forward_formula, self.constants, as_points(px, 2, "px"))[0]
+
+    def inverse(self, px_rect: ArrayLike) -> FloatArray:
+        """Source pixels [..., 2] of rectified pixels [..., 2]; NaN where there is none."""
+        return evaluate_points(self._inverse_formula, self.constants, as_points(px_rect, 2, "px_rect"))[0]
+
+    def jacobian(self, px: ArrayLike) -> FloatArray:
+        """d(rectified)/d(source) [..., 2, 2] at source pixels [..., 2]; NaN where there is none.
+
+        Columns are the paper's w1 = d(û, v̂)/du and w2 = d(û, v̂)/dv.
+        """
+        entries, _ = evaluate_points(self.jacobian_formula, self.constants, as_points(px, 2, "px"))
+        return entries.reshape(*entries.shape[:-1], 2, 2)
+
+    def _forward_formula(self, c: Any, u: Any, v: Any, xp: Any) -> tuple[Any, Any, Any]:
+        x, y, z, seen = self.source.unproject_formula(c.source, u, v, xp)
+        u_rect, v_rect, ok = self.target.project_formula(c.target, *rotated(c.R, x, y, z), xp)
+        return u_rect, v_rect, ok & seen
+
+    def _inverse_formula(self, c: Any, u_rect: Any, v_rect: Any, xp: Any) -> tuple[Any, Any, Any]:
+        x, y, z, ok = self.target.unproject_formula(c.target, u_rect, v_rect, xp)
+        u, v, seen = self.source.project_formula(c.source, *rotated_back(c.R, x, y, z), xp)
+        return u, v, ok & seen
+
+    def jacobian_formula(self, c: Any, u: Any, v: Any, xp: Any) -> tuple[Any, Any, Any, Any, Any]:
+        """∂û/∂u, ∂û/∂v, ∂v̂/∂u, ∂v̂/∂v and the mask, for formulas over many pixels."""
+        x, y, z, seen = self.source.unproject_formula(c.source, u, v, xp)
+        du, dv, _ = projected_partials(self.source, c.source, x, y, z, xp)
+        across, down = (rotated(c.R, *d) for d in ray_derivatives(du, dv))
+        du_rect, dv_rect, ok = projected_partials(self.target, c.target, *rotated(c.R, x, y, z), xp)
+        return (
+            _dot(du_rect, across),
+            _dot(du_rect, down),
+            _dot(dv_rect, across),
+            _dot(dv_rect, down),
+            ok & seen,
+        )
+
+
+Vector = tuple[Any, Any, Any]
+
+
+def ray_derivatives(du: Vector, dv: Vector) -> tuple[Vector, Vector]:
+    """d(unit ray)/du and d(unit ray)/dv from the projection's gradients du/d(ray) and dv/d(ray).
+
+    The columns of the pseudo-inverse: the gradients are orthogonal to the ray, hence so are these.
+    """
+    uu, uv, vv = _dot(du, du), _dot(du, dv), _dot(dv, dv)
+    determinant = uu * vv - uv * uv
+    p, q, r = vv / determinant, uv / determinant, uu / determinant
+    across = (p * du[0] - q * dv[0], p * du[1] - q * dv[1], p * du[2] - q * dv[2])
+    down = (r * dv[0] - q * du[0], r * dv[1] - q * du[1], r * dv[2] - q * du[2])
+    return across, down
+
+
+def rotated(R: Any, x: Any, y: Any, z: Any) -> Vector:
+    """R @ (x, y, z), entry by entry, for formulas."""
+    return _dot(R[0], (x, y, z)), _dot(R[1], (x, y, z)), _dot(R[2], (x, y, z))
+
+
+def rotated_back(R: Any, x: Any, y: Any, z: Any) -> Vector:
+    """Rᵀ @ (x, y, z), entry by entry, for formulas."""
+    a, b, c = R
+    return (
+        a[0] * x + b[0] * y + c[0] * z,
+        a[1] * x + b[1] * y + c[1] * z,
+        a[2] * x + b[2] * y + c[2] * z,
+    )
+
+
+def _dot(a: Any, b: Any) -> Any:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]

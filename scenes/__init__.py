@@ -1,0 +1,1 @@
+"""The scenes that come with rectbench: one file each, built from `rectbench.blocks` and a seed."""

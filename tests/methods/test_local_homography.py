@@ -1,0 +1,88 @@
+"""Local homography: the optimum is the least of what any start reaches, and its slopes stay positive."""
+
+import numpy as np
+import pytest
+from rectbench_methods.local_homography import Energy, LocalHomography
+from scipy.optimize import minimize
+
+import rectbench as rb
+from rectbench.warps import pose_problem
+from tests.rigs_for_tests import LENSES, aligned_rig, rig
+
+method = LocalHomography()
+
+
+@pytest.mark.parametrize("model", sorted(LENSES))
+def test_the_fit_reaches_the_least_of_what_random_starts_reach(model: str) -> None:
+    pair = rig(model)
+    problem = pose_problem(pair)
+    focal = rb.centre_resolution_px(pair)
+    energy = Energy(problem, method.Options())
+    rect = method.fit(problem, method.Options())
+    rng = np.random.default_rng(0)
+    for _ in range(8):
+        start = np.tile([1.0, 0, 0], 3) * rng.uniform(0.3, 2, 9) + rng.normal(0, 0.2, 9)
+        other = minimize(lambda c: energy(c * focal, focal), start, jac=True, method="BFGS")
+        assert rect.notes["energy"] <= other.fun * (1 + 1e-6)
+
+
+def test_the_energy_is_the_distortion_metric() -> None:
+    pair = rig("double-sphere")
+    rect = rb.rectify(pair)
+    assert rb.metrics.distortion(rect, pair) == pytest.approx(rect.notes["energy"], rel=1e-9)
+
+
+def test_the_energys_gradient_is_its_derivative() -> None:
+    pair = rig("kannala-brandt")
+    energy = Energy(pose_problem(pair), method.Options())
+    c = np.tile([220.0, 15, -9], 3) * np.linspace(0.9, 1.1, 9)
+    _, gradient = energy(c, 1.0)
+    step = 1e-4
+    for i, d in enumerate(np.eye(9) * step):
+        difference = (energy(c + d, 1.0)[0] - energy(c - d, 1.0)[0]) / (2 * step)
+        assert gradient[i] == pytest.approx(difference, rel=1e-5, abs=1e-9)
+
+
+def test_no_scaling_of_the_result_lowers_its_distortion() -> None:
+    pair = rig("equisolid")
+    rect = rb.rectify(pair)
+    native = rb.metrics.distortion(rect, pair)
+    assert rb.metrics.distortion(rect, pair, protocol="stretched") == pytest.approx(float(native), rel=1e-6)
+
+
+def test_it_beats_abraham_under_every_protocol() -> None:
+    for model in sorted(LENSES):
+        pair = rig(model)
+        ours, theirs = rb.rectify(pair), rb.rectify(pair, method="abraham")
+        for protocol in ("native", "rescaled", "stretched"):
+            assert rb.metrics.distortion(ours, pair, protocol=protocol) <= rb.metrics.distortion(
+                theirs, pair, protocol=protocol
+            )
+
+
+def test_shared_columns_give_both_images_one_profile_and_cost_no_less() -> None:
+    pair = rig("kannala-brandt", rotation_deg=(2, -5, 3))
+    shared, own = rb.rectify(pair, columns="shared"), rb.rectify(pair)
+    assert shared.left.target.u == shared.right.target.u
+    assert own.left.target.u != own.right.target.u
+    assert shared.notes["energy"] >= own.notes["energy"]
+
+
+def test_the_constraint_holds_where_it_binds() -> None:
+    # All weight on the aspect ratio near the epipoles pulls the slope of û down to its bound.
+    pair = aligned_rig(400, 400, 178, max_angle_deg=89)
+    rect = rb.rectify(pair, alpha_ratio=50.0, alpha_skew=50.0)
+    for profile in (rect.left.target.u, rect.left.target.v):
+        theta = np.linspace(profile.low, profile.high, 500)
+        assert (np.diff(profile(theta)) > 0).all()
+
+
+def test_other_pixels_are_minimised_where_given() -> None:
+    pair = rig()
+    corner = np.stack(np.meshgrid(np.arange(5.0, 150, 10), np.arange(5.0, 100, 10)), -1).reshape(-1, 2)
+    there = rb.rectify(pair, pixels=corner)
+    usual = rb.rectify(pair)
+    assert rb.metrics.distortion(there, pair, pixels=corner) < rb.metrics.distortion(
+        usual, pair, pixels=corner
+    )
+    assert rb.metrics.distortion(there, pair) > rb.metrics.distortion(usual, pair)

@@ -1,0 +1,54 @@
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from rectbench.reporting.bars import bar_chart, draw_bars
+from rectbench.reporting.run_folder import read_run
+from rectbench.reporting.scatter import scatter
+from rectbench.reporting.style import looks
+from tests.reporting.runs import failed_row, make_row, quick_rows
+
+WriteRun = Callable[..., Path]
+
+
+def test_a_failed_cell_is_a_marked_gap_and_no_bar(write_run: WriteRun) -> None:
+    rows = quick_rows(scenes=("street", "room"), rigs=("t265",), poses=("perturbed",))
+    rows[2] = failed_row("street", "t265", "perturbed", "hartley", status="timeout")
+    figure = draw_bars(bar_chart(read_run(write_run(rows)), "row_error_mean_px", "perturbed"))
+    ax = figure.axes[0]
+    assert len(ax.patches) == 9
+    assert [text.get_text() for text in ax.texts] == ["timeout"]
+    assert [label.get_text() for label in ax.get_xticklabels()] == ["street", "room"]
+
+
+def test_bars_are_as_high_as_the_numbers(write_run: WriteRun) -> None:
+    rows = quick_rows(scenes=("street",), rigs=("t265",), poses=("exact",))
+    ax = draw_bars(bar_chart(read_run(write_run(rows)), "distortion_native", "exact")).axes[0]
+    assert ax.get_yscale() == "log"
+    tops = [bar.get_y() + bar.get_height() for bar in ax.patches]
+    assert tops == pytest.approx([row["distortion_native"] for row in rows])
+
+
+def test_seeds_become_one_bar_with_their_range(write_run: WriteRun) -> None:
+    values = {0: 0.2, 1: 0.3, 2: 0.7}
+    rows = [make_row("street", "t265", "exact", "abraham", s, log_distortion=v) for s, v in values.items()]
+    bar = bar_chart(read_run(write_run(rows)), "log_distortion", "exact").panels["t265"]["street"]["abraham"]
+    assert (bar.mean, bar.least, bar.largest) == (pytest.approx(0.4), 0.2, 0.7)
+
+
+def test_scatter_counts_what_it_cannot_show(write_run: WriteRun) -> None:
+    rows = quick_rows(scenes=("street", "room"), rigs=("t265",), poses=("exact",))
+    rows[2] = failed_row("street", "t265", "exact", "hartley")
+    data = scatter(read_run(write_run(rows)), "coverage_solid_angle", ("log_distortion",))
+    assert data.missing == {m: int(m == "hartley") for m in data.methods}
+    assert len(data.panels[0]["hartley"]) == 1
+
+
+def test_a_method_keeps_its_colour_whatever_runs_beside_it() -> None:
+    alone = looks(["mine"])["mine"]
+    assert looks(["mine", "abraham", "local-homography"])["mine"] == alone
+    many = looks(["mine", "abraham", "conventional", "yours", "theirs", "hartley", "fusiello"])
+    assert len(set(many.values())) == len(many)
