@@ -5,10 +5,11 @@ from scipy.optimize import OptimizeResult, least_squares
 
 import rectbench as rb
 
-START_FOCALS = (0.25, 0.6, 1.5)
-"""Starting focal lengths, in image widths + heights; the best end is kept."""
+START_FOCALS = 3
+"""Starting focal lengths, spread between the bounds; the best end is kept."""
 FEW_MATCHES = 100
-PLAUSIBLE_VIEW_DEG = (5.0, 170.0)
+VIEW_DEG = (10.0, 150.0)
+"""The focal length is held to views between these, the plausible ones."""
 
 
 class Fusiello(rb.HomographyRectifier):
@@ -24,30 +25,37 @@ class Fusiello(rb.HomographyRectifier):
         def sampson(p: np.ndarray, chosen: slice) -> np.ndarray:
             return rb.sampson_residuals(fundamental(p, view.centre, unit), left[chosen], right[chosen])
 
+        def all_six(start: np.ndarray, chosen: slice) -> OptimizeResult:
+            return least_squares(sampson, start, bounds=bounds, x_scale=1.0, args=(chosen,))
+
         def fitted(focal: float) -> OptimizeResult:
             """Five angles at a fixed focal length, then all six: the angles must not pay for a poor start."""
-            log = np.log(focal)
+            log = np.log(focal / unit)
             turned = least_squares(lambda angles: sampson(np.append(angles, log), few), level, method="lm")
-            return least_squares(sampson, np.append(turned.x, log), method="lm", x_scale=1.0, args=(few,))
+            return all_six(np.append(turned.x, log), few)
 
+        # Small rotations leave the focal length open: without bounds noise would carry it anywhere.
+        shortest, longest = (view.size[0] / 2 / np.tan(np.radians(fov) / 2) for fov in reversed(VIEW_DEG))
+        bounds = tuple(
+            np.append([angle] * 5, np.log(f / unit)) for angle, f in ((-4, shortest), (4, longest))
+        )
         # A few matches tell which start is good; all of them then finish it.
         few, every = slice(None, None, max(1, len(left) // FEW_MATCHES)), slice(None)
         roll = upright_roll(*view.matches)
         level = np.array([0, roll, 0, 0, roll])
-        best = min((fitted(focal) for focal in START_FOCALS), key=lambda fit: fit.cost)
-        best = least_squares(sampson, best.x, method="lm", x_scale=1.0, args=(every,))
+        starts = np.geomspace(shortest, longest, START_FOCALS + 2)[1:-1]
+        best = min((fitted(focal) for focal in starts), key=lambda fit: fit.cost)
+        best = all_six(best.x, every)
 
         R_left, R_right, focal = unpack(best.x, unit)
         K = intrinsics(focal, view.centre)
-        fov_deg = float(np.degrees(2 * np.arctan(view.size[0] / 2 / focal)))
         notes: dict[str, float | str] = {
             "focal_px": focal,
             "sampson_rms_px": float(np.sqrt(2 * best.cost / len(left))),
         }
-        if not PLAUSIBLE_VIEW_DEG[0] <= fov_deg <= PLAUSIBLE_VIEW_DEG[1]:
-            notes["warning"] = (
-                f"the fitted focal length means a view of {fov_deg:.1f}°: the matches leave it open"
-            )
+        if best.active_mask[5]:
+            bound = VIEW_DEG[1] if best.active_mask[5] < 0 else VIEW_DEG[0]
+            notes["warning"] = f"the matches leave the focal length open: it ended at a view of {bound:.0f}°"
         return K @ R_left @ np.linalg.inv(K), K @ R_right @ np.linalg.inv(K), notes
 
 

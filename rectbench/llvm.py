@@ -24,13 +24,12 @@ WHEEL = "karellen-llvm-core"
 
 def _shipped_library() -> Path | None:
     """The libLLVM installed by the wheel, wherever pip put it (venv, user or target folder)."""
-    folders = [Path(sys.prefix) / "lib"]
     try:
-        for file in importlib.metadata.files(WHEEL) or []:
-            if file.name.startswith("libLLVM"):
-                folders.append(Path(str(file.locate())).resolve().parent)
+        files = importlib.metadata.files(WHEEL) or []
     except importlib.metadata.PackageNotFoundError:
-        pass
+        files = []
+    libraries = (Path(str(file.locate())).resolve() for file in files if file.name.startswith("libLLVM"))
+    folders = [Path(sys.prefix) / "lib", *(library.parent for library in libraries)]
     for folder in folders:
         # The unversioned links appear only after the first interpreter start: match all of them.
         found = sorted(folder.glob("libLLVM*.so*"))

@@ -16,8 +16,18 @@ if TYPE_CHECKING:
     from rectbench.bench.doctor import Finding
     from rectbench.bench.gating import Verdict
 
-WIDE = 200
+WIDE = 160
 """Columns assumed where the output is no terminal, so that a pipe gets whole lines."""
+
+_PAGE_ONLY = (
+    "distortion_rescaled",
+    "row_error_p95_px",
+    "row_error_source_mean_px",
+    "coverage_pixels",
+    "sampling_lost",
+    "maps_s",
+)
+"""Columns of the main table that would make it too wide for a terminal; the page has them."""
 
 SHOWN_DIFFERENCES = 40
 
@@ -105,11 +115,12 @@ def show_summary(folder: Path) -> None:
     screen, found = console(), read_run(folder)
     for summary in main_tables(found):
         table = Table(title=summary.title, caption=" ".join([summary.caption, *summary.notes]))
-        for heading in summary.headings:
+        shown = [i for i, heading in enumerate(summary.headings) if heading.key not in _PAGE_ONLY]
+        for i in shown:
+            heading = summary.headings[i]
             table.add_column(heading.text, justify="right" if heading.numeric else "left")
-        for section in summary.sections:
-            for row in section.rows:
-                table.add_row(*(Text(entry.text, style="bold" if entry.best else "") for entry in row))
+        for row in summary.rows:
+            table.add_row(*(Text(row[i].text, style="bold" if row[i].best else "") for i in shown))
         screen.print(table)
     for failure in found.failures:
         cell = f"{failure.method} on {failure.scene}/{failure.rig}/{failure.motion}/{failure.pose}"

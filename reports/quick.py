@@ -19,5 +19,5 @@ report = rb.Report(
     quality="fast",
     spp=16,
     metrics=("geometry", "row_error", "row_error_features", "timing"),
-    match_noise_px=0.5,
+    match_noise_px=0.1,
 )

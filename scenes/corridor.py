@@ -29,11 +29,14 @@ def corridor(seed: int) -> rb.World:
     return rb.World(
         meshes=rb.blocks.meshes(models),
         world_from_left=rb.blocks.stand(
-            rng.uniform(-0.62, -0.45), rng.uniform(-0.4, 0.4), rng.uniform(1.45, 1.65), yaw_deg=rng.normal(0, 2)
+            rng.uniform(-0.50, -0.42),
+            rng.uniform(-0.4, 0.4),
+            rng.uniform(1.45, 1.65),
+            yaw_deg=rng.normal(0, 2),
         ),
         lamps=lamps(),
-        exposure=1.5,
-        fast_exposure=1.3,
+        exposure=1.9,
+        fast_exposure=1.5,
     )
 
 
@@ -48,6 +51,11 @@ def on_wall(model: rb.blocks.Model, side: int, y: float, z: float = 0.0) -> rb.b
     return model.at(side * HALF_WIDTH, y, z, turn_deg=-90.0 * side)
 
 
+def painting(rng: np.random.Generator) -> int:
+    """The number of a poster that is no notice: every third one is all words."""
+    return int(3 * rng.integers(8) + rng.integers(2))
+
+
 def surfaces(seed: int) -> list[rb.blocks.Model]:
     """Terrazzo floor, tiled dado with a rail, painted walls, fibre-board ceiling, skirting."""
     b = rb.blocks
@@ -60,8 +68,14 @@ def surfaces(seed: int) -> list[rb.blocks.Model]:
     ]
     for side, paint in zip((-1, 1), paints, strict=True):
         at = side * HALF_WIDTH
-        wall = [[(at, y[0], low), (at, y[1], low), (at, y[1], high), (at, y[0], high)] for low, high in ((0.0, DADO_Z), (DADO_Z, HEIGHT))]
-        rail = b.boxes([min(at, at - side * 0.018), y[0], DADO_Z - 0.04], [max(at, at - side * 0.018), y[1], DADO_Z + 0.04])
+        wall = [
+            [(at, y[0], low), (at, y[1], low), (at, y[1], high), (at, y[0], high)]
+            for low, high in ((0.0, DADO_Z), (DADO_Z, HEIGHT))
+        ]
+        rail = b.boxes(
+            [min(at, at - side * 0.018), y[0], DADO_Z - 0.04],
+            [max(at, at - side * 0.018), y[1], DADO_Z + 0.04],
+        )
         skirt = b.boxes([min(at, at - side * 0.014), y[0], 0.0], [max(at, at - side * 0.014), y[1], 0.12])
         models += [b.quads(wall[:1]).of(tiles), b.quads(wall[1:]).of(paint), (rail + skirt).of(oak)]
     return models
@@ -71,29 +85,42 @@ def along_the_walls(seed: int, rng: np.random.Generator) -> list[rb.blocks.Model
     """Doors in turn with posters, notice boards, radiators, lockers and extinguishers."""
     b = rb.blocks
     leaves = [b.timber(seed + 2, b.WALNUT), b.enamel(seed, (0.07, 0.17, 0.22)), b.timber(seed + 3, b.PINE)]
-    frame, steel = b.enamel(seed + 1, (0.50, 0.49, 0.44), glossy=False), b.enamel(seed + 2, (0.40, 0.40, 0.39), wear=0.6)
+    frame, steel = (
+        b.enamel(seed + 1, (0.50, 0.49, 0.44), glossy=False),
+        b.enamel(seed + 2, (0.40, 0.40, 0.39), wear=0.6),
+    )
     prints, cork = b.posters(seed), b.cloth(seed, (0.30, 0.18, 0.09))
     green, red = b.enamel(seed + 3, (0.12, 0.22, 0.20)), b.enamel(seed + 4, (0.42, 0.05, 0.04))
-    black, white = b.enamel(seed + 5, (0.05, 0.05, 0.05)), b.enamel(seed + 6, (0.56, 0.55, 0.50), glossy=False)
+    black, white = (
+        b.enamel(seed + 5, (0.05, 0.05, 0.05)),
+        b.enamel(seed + 6, (0.56, 0.55, 0.50), glossy=False),
+    )
     models = []
     for side in (-1, 1):
         y = NEAR_Y + rng.uniform(0.8, 1.6)
         for k in range(9):
             leaf = leaves[int(rng.integers(3))]
             models.append(on_wall(b.door(leaf, frame, steel, prints, int(rng.integers(24))), side, y))
+            models += [on_wall(sheet, side, y - 0.75, 1.25) for sheet in _pinned_sheets(prints, rng)]
             middle = y + 1.45
             match (k + (side > 0) + seed) % 4:
                 case 0:
-                    models.append(on_wall(b.notice_board(cork, leaves[2], prints, rng, width=1.3), side, middle, 1.2))
+                    models.append(
+                        on_wall(b.notice_board(cork, leaves[2], prints, rng, width=1.3), side, middle, 1.2)
+                    )
                     models.append(on_wall(b.radiator(white, width=1.0), side, middle))
                 case 1:
                     models.append(on_wall(b.lockers(green, steel, count=4), side, middle))
                 case 2:
-                    models.append(on_wall(b.picture(prints, black, int(rng.integers(24)), width=0.9, height=1.2), side, middle, 1.2))
+                    models.append(
+                        on_wall(
+                            b.picture(prints, black, painting(rng), width=0.9, height=1.2), side, middle, 1.2
+                        )
+                    )
                     models.append(on_wall(b.extinguisher(red, black), side, middle + 0.4, 0.3))
                 case _:
                     for offset, size in ((-0.35, 0.5), (0.35, 0.42)):
-                        index = int(rng.integers(24))
+                        index = painting(rng)
                         framed = b.picture(prints, leaves[0], index, width=size, height=size * 4 / 3)
                         models.append(on_wall(framed, side, middle + offset, 1.3 + rng.uniform(0, 0.15)))
             y += 2.75 + rng.uniform(0.0, 0.2)
@@ -102,12 +129,27 @@ def along_the_walls(seed: int, rng: np.random.Generator) -> list[rb.blocks.Model
     return models
 
 
+def _pinned_sheets(prints: rb.blocks.Prints, rng: np.random.Generator) -> list[rb.blocks.Model]:
+    """Papers pinned to a wall beside a door, and one on the door itself."""
+    places = ((0.02, -0.006, 0.0), (-0.25, -0.008, 0.05), (-0.1, -0.01, 0.36), (0.75, -0.055, 0.25))
+    return [
+        prints.on(
+            rb.blocks.panel(0.21, 0.29).tipped((0, 1, 0), rng.normal(0, 3)).at(x, y, z), int(rng.integers(24))
+        )
+        for x, y, z in places
+    ]  # fmt: skip
+
+
 def on_the_floor(seed: int, rng: np.random.Generator) -> list[rb.blocks.Model]:
     """Chairs, a bench, plants, parcels, a ladder, a bicycle somebody brought in."""
     b = rb.blocks
     oak, cloth = b.timber(seed + 10, b.OAK), b.cloth(seed + 1, (0.26, 0.06, 0.05), (0.42, 0.22, 0.08))
     iron, boxes = b.enamel(seed + 10, (0.06, 0.065, 0.07)), b.parcels(seed)
-    clay, soil, palm = b.plaster(seed + 3, (0.36, 0.15, 0.08)), b.forest_floor(seed), b.foliage(seed, (0.06, 0.17, 0.04))
+    clay, soil, palm = (
+        b.plaster(seed + 3, (0.36, 0.15, 0.08)),
+        b.forest_floor(seed),
+        b.foliage(seed, (0.06, 0.17, 0.04)),
+    )
     plants = [b.potted_plant(seed + k, clay, soil, palm, height=1.0 + 0.3 * k) for k in range(2)]
     models = [
         b.chair(oak, cloth).at(1.2, 3.2 + rng.uniform(-0.2, 0.2), turn_deg=rng.uniform(240, 280)),
@@ -118,14 +160,18 @@ def on_the_floor(seed: int, rng: np.random.Generator) -> list[rb.blocks.Model]:
         plants[1].at(1.15, 8.3, turn_deg=70),
         plants[0].at(-1.2, 15.0, turn_deg=200),
         b.step_ladder(oak, iron).at(-1.05, 9.8, turn_deg=rng.uniform(60, 120)),
-        b.bicycle(b.enamel(seed + 11, (0.36, 0.06, 0.04)), iron).tipped((1, 0, 0), 8).at(1.36, 5.9, turn_deg=90),
+        b.bicycle(b.enamel(seed + 11, (0.36, 0.06, 0.04)), iron)
+        .tipped((1, 0, 0), 8)
+        .at(1.36, 5.9, turn_deg=90),
     ]
     for x, y, count in ((1.15, 10.2, 4), (-1.15, 4.3, 3), (1.2, 15.6, 4), (-1.1, -1.8, 3), (1.2, -1.4, 2)):
         z = 0.0
         for k in range(count):
             size = (rng.uniform(0.3, 0.5), rng.uniform(0.3, 0.45), rng.uniform(0.2, 0.36))
             box = b.parcel(boxes, size, int(rng.integers(16)))
-            models.append(box.at(x + 0.05 * rng.normal(), y + 0.05 * rng.normal(), z, turn_deg=rng.normal(0, 12)))
+            models.append(
+                box.at(x + 0.05 * rng.normal(), y + 0.05 * rng.normal(), z, turn_deg=rng.normal(0, 12))
+            )
             z += size[2]
             if k == 1:
                 z, y = 0.0, y + 0.6
@@ -136,24 +182,37 @@ def under_the_ceiling(seed: int, rng: np.random.Generator) -> list[rb.blocks.Mod
     """Painted pipes with flanges, a cable tray, hanging signs."""
     b = rb.blocks
     red, blue = b.enamel(seed + 20, (0.38, 0.07, 0.05)), b.enamel(seed + 21, (0.09, 0.20, 0.32))
-    steel, copper = b.enamel(seed + 22, (0.42, 0.42, 0.40), wear=1.5), b.enamel(seed + 23, (0.42, 0.19, 0.10), wear=1.5)
+    steel, copper = (
+        b.enamel(seed + 22, (0.42, 0.42, 0.40), wear=1.5),
+        b.enamel(seed + 23, (0.42, 0.19, 0.10), wear=1.5),
+    )
     models = []
-    for x, z, radius, finish in ((-1.45, 2.6, 0.06, red), (-1.28, 2.63, 0.045, copper), (1.42, 2.58, 0.075, blue), (1.2, 2.66, 0.03, steel)):
+    for x, z, radius, finish in (
+        (-1.45, 2.6, 0.06, red),
+        (-1.28, 2.63, 0.045, copper),
+        (1.42, 2.58, 0.075, blue),
+        (1.2, 2.66, 0.03, steel),
+    ):
         models.append(b.rod((x, NEAR_Y, z), (x, FAR_Y, z), radius, 14).of(finish))
-        collars = [b.rod((x, y, z), (x, y + 0.06, z), 1.35 * radius, 14) for y in np.arange(NEAR_Y + rng.uniform(0.2, 1), FAR_Y, 1.9)]
+        collars = [
+            b.rod((x, y, z), (x, y + 0.06, z), 1.35 * radius, 14)
+            for y in np.arange(NEAR_Y + rng.uniform(0.2, 1), FAR_Y, 1.9)
+        ]
         models.append(b.join(collars).of(steel))
     rungs = [b.box(0.3, 0.025, 0.012).at(-0.95, y, 2.62) for y in np.arange(NEAR_Y, FAR_Y, 0.3)]
     edges = [b.boxes([x, NEAR_Y, 2.6], [x + 0.012, FAR_Y, 2.66]) for x in (-1.11, -0.80)]
     models.append(b.join(rungs + edges).of(steel))
     cables = [
-        b.cable((-1.06 + 0.05 * k, NEAR_Y + 5 * j, 2.65), (-1.06 + 0.05 * k, NEAR_Y + 5 * j + 5, 2.65), -0.01, 0.012)
-        for k in range(5) for j in range(5)
+        b.cable((x, y, 2.65), (x, y + 5.0, 2.65), -0.01, 0.012)
+        for x in np.arange(-1.06, -0.84, 0.05) for y in np.arange(NEAR_Y, FAR_Y, 5.0)
     ]  # fmt: skip
     models += [b.join(cables[0::2]).of(red), b.join(cables[1::2]).of(blue)]
     prints = b.posters(seed + 1)
     for y in (5.5, 11.5, 17.0):
         sign = b.panel(0.7, 0.3).at(-0.35, y, 2.2)
-        wires = b.rod((-0.3, y, 2.5), (-0.3, y, HEIGHT), 0.004, 4) + b.rod((0.3, y, 2.5), (0.3, y, HEIGHT), 0.004, 4)
+        wires = b.rod((-0.3, y, 2.5), (-0.3, y, HEIGHT), 0.004, 4) + b.rod(
+            (0.3, y, 2.5), (0.3, y, HEIGHT), 0.004, 4
+        )
         models += [prints.on(sign, 2 + 3 * int(rng.integers(8))), wires.of(steel)]
     return models
 
@@ -167,10 +226,19 @@ def at_the_ends(seed: int, rng: np.random.Generator) -> list[rb.blocks.Model]:
     a = HALF_WIDTH
     ends = [[(-a, y, 0), (a, y, 0), (a, y, HEIGHT), (-a, y, HEIGHT)] for y in (NEAR_Y, FAR_Y)]
     clock = b.cylinder(0.16, 0.05, 32).tipped((1, 0, 0), 90).at(0, FAR_Y, 2.42)
-    hands = b.boxes([(-0.006, FAR_Y - 0.06, 2.42), (0.0, FAR_Y - 0.06, 2.414)], [(0.006, FAR_Y - 0.05, 2.55), (0.09, FAR_Y - 0.05, 2.426)])
+    hands = b.boxes(
+        [(-0.006, FAR_Y - 0.06, 2.42), (0.0, FAR_Y - 0.06, 2.414)],
+        [(0.006, FAR_Y - 0.05, 2.55), (0.09, FAR_Y - 0.05, 2.426)],
+    )
     far = [b.door(red, frame, steel, prints, int(rng.integers(24))).at(x, FAR_Y) for x in (-0.46, 0.46)]
     near = [
         b.door(red, frame, steel, prints, int(rng.integers(24))).at(0.6, NEAR_Y, turn_deg=180),
-        b.picture(prints, frame, int(rng.integers(24)), width=0.9, height=1.2).at(-0.8, NEAR_Y, 1.0, turn_deg=180),
+        b.picture(prints, frame, painting(rng), width=0.9, height=1.2).at(-0.8, NEAR_Y, 1.0, turn_deg=180),
     ]
-    return [b.quads(ends).of(wall), clock.of(b.plaster(seed, (0.62, 0.60, 0.54))), hands.of(steel), *far, *near]
+    return [
+        b.quads(ends).of(wall),
+        clock.of(b.plaster(seed, (0.62, 0.60, 0.54))),
+        hands.of(steel),
+        *far,
+        *near,
+    ]

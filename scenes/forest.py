@@ -9,8 +9,13 @@ import numpy as np
 import rectbench as rb
 
 PATH_HALF_WIDTH = 0.9
-CLEARING_M = 3.2
+CLEARING_M = 3.4
 """No trunk stands closer to the camera."""
+BUILT = np.array([
+    (-1.9, 5.2), (-1.75, 6.9), (2.6, 4.0), (2.2, 4.6), (2.8, 7.7), (3.3, 10.5), (4.2, 13.5), (-8, 4), (-5, 5),
+])  # fmt: skip
+"""Where bench, bin, sign and fences stand, metres: nothing grows within `BUILT_MARGIN_M` of them."""
+BUILT_MARGIN_M = 1.4
 
 
 def path_x(y: np.ndarray) -> np.ndarray:
@@ -23,7 +28,9 @@ def forest(seed: int) -> rb.World:
     """A park wood with birches, limes and spruces, ferns, grass, logs, a fence and a path."""
     rng = np.random.default_rng((seed, 104))
     return rb.World(
-        meshes=rb.blocks.meshes([*ground(seed, rng), *built_things(seed, rng), *wood(seed, rng), *undergrowth(seed, rng)]),
+        meshes=rb.blocks.meshes(
+            [*ground(seed), *built_things(seed, rng), *wood(seed, rng), *undergrowth(seed, rng)]
+        ),
         world_from_left=rb.blocks.stand(
             rng.uniform(-0.5, 0.1), rng.uniform(-0.4, 0.4), rng.uniform(1.5, 1.7), yaw_deg=rng.normal(0, 3)
         ),
@@ -46,7 +53,7 @@ def on_ground(x: np.ndarray, y: np.ndarray, seed: int, sink: float = 0.0) -> np.
     return np.stack([x, y, height(x, y, seed) - sink], axis=1)
 
 
-def ground(seed: int, rng: np.random.Generator) -> list[rb.blocks.Model]:
+def ground(seed: int) -> list[rb.blocks.Model]:
     """Leaf litter near, grass to the horizon, and the path."""
     b = rb.blocks
     x, y = np.linspace(-45, 45, 121), np.linspace(-45, 60, 141)
@@ -60,7 +67,7 @@ def ground(seed: int, rng: np.random.Generator) -> list[rb.blocks.Model]:
     path = b.loft(np.stack([px, py, pz], axis=-1), closed=False)
     return [
         b.terrain(x, y, height(grid_x, grid_y, seed)).of(b.forest_floor(seed)),
-        b.floor((-2500, 2500), (-2500, 2500), -1.2).of(b.lawn(seed)),
+        b.floor((-2500, 2500), (-2500, 2500), -0.5).of(b.lawn(seed, (0.085, 0.125, 0.04))),
         path.of(b.gravel(seed)),
     ]
 
@@ -76,22 +83,29 @@ def built_things(seed: int, rng: np.random.Generator) -> list[rb.blocks.Model]:
         b.bench(weathered, iron).at(-1.9, 5.2 + rng.uniform(-0.3, 0.3), turn_deg=75),
         b.litter_bin(weathered, iron).at(-1.75, 6.9),
         b.plank(0.12, 0.12, 2.0).at(2.6, 4.0, -0.1).of(weathered),
-        prints.on(b.panel(0.55, 0.42).at(-0.27, -0.07, 1.3), 2 + 3 * int(rng.integers(8))).at(2.6, 4.0, turn_deg=-20),
+        prints.on(b.panel(0.55, 0.42).at(-0.27, -0.07, 1.3), 2 + 3 * int(rng.integers(8))).at(
+            2.6, 4.0, turn_deg=-20
+        ),
     ]
-    for _ in range(16):
-        angle, away = rng.uniform(-0.3, np.pi + 0.3), rng.uniform(3.2, 16.0)
-        x, y = away * np.cos(angle), away * np.sin(angle)
-        if abs(x - path_x(y)) > 1.6:
-            stone = b.boulder(rng, rng.uniform(0.25, 0.95))
-            models.append(stone.at(x, y, float(height(x, y, seed)), turn_deg=rng.uniform(0, 360)).of(rock))
+    for x, y, z in on_ground(*standing_places(rng, 14, 3.4, 15.0, 1.4).T, seed):
+        models.append(
+            b.boulder(rng, rng.uniform(0.25, 0.95)).at(x, y, z, turn_deg=rng.uniform(0, 360)).of(rock)
+        )
     return models
 
 
-def standing_places(rng: np.random.Generator, count: int, near: float, far: float, apart: float) -> np.ndarray:
-    """Up to `count` places [K, 2] between `near` and `far` metres off, `apart` from each other and off the path."""
+def standing_places(
+    rng: np.random.Generator, count: int, near: float, far: float, apart: float
+) -> np.ndarray:
+    """Up to `count` places [K, 2] from `near` to `far` metres off, `apart` metres from each other.
+
+    None is on the path or in the way of what is built beside it.
+    """
     angle, away = rng.uniform(0, 2 * np.pi, 6 * count), np.sqrt(rng.uniform(near**2, far**2, 6 * count))
     candidates = np.stack([away * np.cos(angle), away * np.sin(angle)], axis=1)
-    candidates = candidates[np.abs(candidates[:, 0] - path_x(candidates[:, 1])) > PATH_HALF_WIDTH + 0.7]
+    off_path = np.abs(candidates[:, 0] - path_x(candidates[:, 1])) > PATH_HALF_WIDTH + 0.7
+    off_built = np.linalg.norm(candidates[:, None] - BUILT, axis=2).min(axis=1) > min(BUILT_MARGIN_M, apart)
+    candidates = candidates[off_path & off_built]
     chosen = candidates[:0]
     for place in candidates:
         if len(chosen) < count and (np.hypot(*(chosen - place).T) > apart).all():
@@ -116,15 +130,18 @@ def wood(seed: int, rng: np.random.Generator) -> list[rb.blocks.Model]:
     models = []
     # Nearest to farthest: count, metres from and to, metres apart, detail.
     for count, near, far, apart, detail in (
-        (11, CLEARING_M, 11.0, 2.6, 0.7), (24, 11.0, 21.0, 2.6, 0.3), (75, 21.0, 50.0, 2.8, 0.09), (190, 50.0, 120.0, 3.0, 0.02),
-    ):  # fmt: skip
+        (10, CLEARING_M, 11.0, 2.6, 0.9),
+        (24, 11.0, 21.0, 2.6, 0.2),
+        (80, 21.0, 50.0, 2.8, 0.06),
+        (260, 50.0, 110.0, 3.0, 0.02),
+    ):
         xy = standing_places(rng, count, near, far, apart)
         places = on_ground(xy[:, 0], xy[:, 1], seed, sink=0.05)
         # Spruces are opaque: they stand back, where they close the view.
         kind = rng.choice(3, len(xy), p=(0.5, 0.5, 0.0) if detail > 0.5 else (0.4, 0.3, 0.3))
         for k, tree in enumerate(kinds(detail)):
             models.append(b.copies(tree, b.scattered(rng, places[kind == k], (0.8, 1.25))))
-    saplings = standing_places(rng, 9, CLEARING_M, 13.0, 1.5)
+    saplings = standing_places(rng, 9, 4.8, 13.0, 1.5)
     dry = b.bare_tree(seed, bark, height=4.5)
     return [*models, b.copies(dry, b.scattered(rng, on_ground(*saplings.T, seed, sink=0.05), (0.5, 1.1)))]
 
@@ -135,14 +152,16 @@ def undergrowth(seed: int, rng: np.random.Generator) -> list[rb.blocks.Model]:
     bark, grass = b.bark(seed + 1), b.foliage(seed + 3, (0.15, 0.21, 0.05))
     green, fronds = b.foliage(seed + 4, (0.09, 0.18, 0.04)), b.foliage(seed + 5, (0.12, 0.21, 0.035))
 
-    def strewn(model: rb.blocks.Model, count: int, near: float, far: float, apart: float, low: float, high: float) -> rb.blocks.Model:
+    def strewn(
+        model: rb.blocks.Model, count: int, near: float, far: float, apart: float, low: float, high: float
+    ) -> rb.blocks.Model:
         xy = standing_places(rng, count, near, far, apart)
         return b.copies(model, b.scattered(rng, on_ground(*xy.T, seed, sink=0.02), (low, high)))
 
     return [
-        strewn(b.grass_tuft(seed, grass, height=0.24, count=55), 520, 1.3, 13.0, 0.25, 0.6, 1.5),
+        strewn(b.grass_tuft(seed, grass, height=0.24, count=40), 600, 1.3, 13.0, 0.25, 0.6, 1.5),
         strewn(b.fern(seed, fronds), 36, 1.9, 9.0, 0.8, 0.7, 1.4),
         strewn(b.fern(seed + 1, fronds), 36, 1.9, 16.0, 0.8, 0.7, 1.4),
-        strewn(b.bush(seed, bark, green), 26, 3.6, 26.0, 1.5, 0.7, 1.6),
+        strewn(b.bush(seed, bark, green), 26, 4.4, 26.0, 1.5, 0.6, 1.1),
         strewn(b.log(seed, bark, length=3.2), 5, 4.0, 14.0, 3.0, 0.7, 1.1),
     ]

@@ -11,6 +11,7 @@ KERB_Y = (0.9, 7.0)
 """The road lies between these, metres; pavements on both sides."""
 PAVEMENT_Z = 0.12
 ROAD_END_X = 160.0
+RED_BRICKS = (rb.blocks.RED_BRICK, (0.40, 0.17, 0.085), (0.31, 0.095, 0.06))
 BACK_ROW_Y = -6.0
 """Front of the houses behind the camera."""
 
@@ -30,10 +31,13 @@ def street(seed: int) -> rb.World:
     return rb.World(
         meshes=rb.blocks.meshes(models),
         world_from_left=rb.blocks.stand(
-            rng.uniform(-1.0, 0.6), rng.uniform(-0.2, 0.3), PAVEMENT_Z + rng.uniform(1.5, 1.7), yaw_deg=rng.normal(0, 2.5)
+            rng.uniform(-1.0, 0.6),
+            rng.uniform(-0.2, 0.3),
+            PAVEMENT_Z + rng.uniform(1.5, 1.7),
+            yaw_deg=rng.normal(0, 2.5),
         ),
         sun=rb.Sun((rng.uniform(-0.75, -0.35), rng.uniform(-0.75, -0.5), 0.7), turbidity=3.0),
-        exposure=3.4,
+        exposure=3.7,
         fast_exposure=0.6,
     )
 
@@ -52,7 +56,10 @@ def ground(seed: int, front_y: float) -> list[rb.blocks.Model]:
         for k in np.arange(-45.0, 45.0)
     ]
     covers = [b.cylinder(0.32, 0.006).at(cx, cy) for cx, cy in ((-3.2, 2.6), (4.5, 5.2), (11.0, 3.0))]
-    repairs = [b.floor((c, c + w), (y, y + d), 0.002) for c, w, y, d in ((-6, 2.4, 4.3, 1.1), (2.2, 1.3, 1.5, 0.9), (7, 4, 2.2, 0.8))]
+    repairs = [
+        b.floor((c, c + w), (y, y + d), 0.002)
+        for c, w, y, d in ((-6, 2.4, 4.3, 1.1), (2.2, 1.3, 1.5, 0.9), (7, 4, 2.2, 0.8))
+    ]
     return [
         b.floor((-2500, 2500), (-2500, 2500), -0.06).of(b.lawn(seed)),
         b.floor(x, KERB_Y).of(asphalt),
@@ -72,9 +79,12 @@ def houses(seed: int, rng: np.random.Generator, front_y: float) -> list[rb.block
     stone = b.concrete(seed, (0.47, 0.44, 0.38))
     panes = b.window_panes(seed)
     roofs = [b.roof_tiles(seed), b.roof_tiles(seed + 1, (0.13, 0.125, 0.13))]
-    doors = [b.enamel(seed + k, c) for k, c in enumerate([(0.05, 0.16, 0.11), (0.30, 0.05, 0.045), (0.06, 0.11, 0.25)])]
+    doors = [
+        b.enamel(seed + k, c)
+        for k, c in enumerate([(0.05, 0.16, 0.11), (0.30, 0.05, 0.045), (0.06, 0.11, 0.25)])
+    ]
     walls = [
-        b.brick(seed),
+        b.brick(seed, RED_BRICKS[seed % len(RED_BRICKS)]),
         b.brick(seed + 1, b.YELLOW_BRICK, rows=64, columns=32),
         b.plaster(seed, (0.58, 0.47, 0.32)),
         b.brick(seed + 2, b.BROWN_BRICK, rows=64, columns=32),
@@ -98,7 +108,11 @@ def houses(seed: int, rng: np.random.Generator, front_y: float) -> list[rb.block
     half = rng.uniform(6.6, 7.6)
     main = b.house(rng, dressed(0), width=2 * half, storeys=3)
     shift = int(rng.integers(4))
-    across = [main, *row(shift, half + rng.uniform(0.05, 2.5), 1), *row(shift + 2, -half - rng.uniform(0.05, 2.5), -1)]
+    across = [
+        main,
+        *row(shift, half + rng.uniform(0.05, 2.5), 1),
+        *row(shift + 2, -half - rng.uniform(0.05, 2.5), -1),
+    ]
     behind = [*row(shift + 1, rng.uniform(-3, 3), 1), *row(shift + 3, -4.5, -1)]
     return [
         *(model.at(0, front_y, PAVEMENT_Z) for model in across),
@@ -114,7 +128,10 @@ def street_furniture(seed: int, rng: np.random.Generator, front_y: float) -> lis
     red, green = b.enamel(seed + 22, (0.42, 0.045, 0.035)), b.enamel(seed + 23, (0.05, 0.17, 0.10))
     tyre, boxes = b.enamel(seed + 24, (0.045, 0.045, 0.045), glossy=False), b.parcels(seed)
     z, wall_y = PAVEMENT_Z, front_y - 0.55
-    things = [b.lamp_post(iron, glass).at(x, KERB_Y[1] + 0.55, z) for x in (-17.0, rng.uniform(-4.6, -3.4), 10.5, 24.0)]
+    things = [
+        b.lamp_post(iron, glass).at(x, KERB_Y[1] + 0.55, z)
+        for x in (-17.0, rng.uniform(-4.6, -3.4), 10.5, 24.0)
+    ]
     things += [b.lamp_post(iron, glass).at(x, KERB_Y[0] - 0.5, z) for x in (-11.0, 5.0, 18.0)]
     things += [b.bench(wood, iron).at(x, wall_y + 0.1, z) for x in (rng.uniform(0.6, 2.4), -9.3)]
     things += [b.bench(wood, iron).at(3.4, -0.9, z, turn_deg=180 + rng.normal(0, 8))]
@@ -129,23 +146,46 @@ def street_furniture(seed: int, rng: np.random.Generator, front_y: float) -> lis
         b.railing(iron, length=7.8).at(-13.0, front_y - 0.9, z),
         b.railing(iron, length=11.7).at(-8.0, -3.2, z),
     ]
-    for k in range(9):
+    for _ in range(9):
         width, depth, height = rng.uniform(0.25, 0.6, 3)
         x, y = rng.choice([-5.6, 6.9, 9.5, -10.8]) + rng.uniform(-0.8, 0.8), wall_y + rng.uniform(-0.3, 0.2)
-        things.append(b.parcel(boxes, (width, depth, height), int(rng.integers(16))).at(x, y, z, turn_deg=rng.uniform(-30, 30)))
+        things.append(
+            b.parcel(boxes, (width, depth, height), int(rng.integers(16))).at(
+                x, y, z, turn_deg=rng.uniform(-30, 30)
+            )
+        )
     return things
 
 
 def parked_cars(seed: int, rng: np.random.Generator) -> list[rb.blocks.Model]:
     """Cars along both kerbs, with a gap before the main door."""
     b = rb.blocks
-    colours = [(0.32, 0.035, 0.03), (0.045, 0.11, 0.24), (0.50, 0.49, 0.46), (0.07, 0.16, 0.10), (0.52, 0.38, 0.10)]
+    colours = [
+        (0.32, 0.035, 0.03),
+        (0.045, 0.11, 0.24),
+        (0.50, 0.49, 0.46),
+        (0.07, 0.16, 0.10),
+        (0.52, 0.38, 0.10),
+    ]
     paints = [b.enamel(seed + 30 + k, colours[k], wear=0.35) for k in rng.permutation(5)]
     glass, trim = b.enamel(seed + 36, (0.06, 0.075, 0.085), wear=0.4), b.enamel(seed + 37, (0.42, 0.42, 0.41))
     tyre = b.enamel(seed + 38, (0.04, 0.04, 0.042), glossy=False)
-    places = [(-7.4, 6.0), (7.2, 6.0), (12.6, 6.05), (-12.9, 5.95), (-18.4, 6.0), (19.5, 6.0), (9.6, 1.95), (-9.4, 1.95), (15.2, 1.9), (-16.0, 1.95)]
+    places = [
+        (-7.4, 6.0),
+        (7.2, 6.0),
+        (12.6, 6.05),
+        (-12.9, 5.95),
+        (-18.4, 6.0),
+        (19.5, 6.0),
+        (9.6, 1.95),
+        (-9.4, 1.95),
+        (15.2, 1.9),
+        (-16.0, 1.95),
+    ]
     return [
-        b.car(paints[k % 5], glass, tyre, trim).at(x + rng.uniform(-0.5, 0.5), y, turn_deg=rng.normal(0, 1) + 180 * (y > 4))
+        b.car(paints[k % 5], glass, tyre, trim).at(
+            x + rng.uniform(-0.5, 0.5), y, turn_deg=rng.normal(0, 1) + 180 * (y > 4)
+        )
         for k, (x, y) in enumerate(places)
     ]
 
@@ -155,18 +195,22 @@ def trees(seed: int, rng: np.random.Generator, front_y: float) -> list[rb.blocks
     b = rb.blocks
     bark, leaves = b.bark(seed), [b.foliage(seed), b.foliage(seed + 1, (0.15, 0.20, 0.03))]
     limes = [b.broadleaf(seed + k, bark, leaves[k], height=(6.8, 7.4)[k]) for k in range(2)]
-    pavement = [(-5.6, 7.9), (5.0, 7.85), (15.8, 8.0), (-14.8, 7.9), (-6.8, -1.2), (9.4, -1.6)]
-    near = [(x + rng.uniform(-0.5, 0.5), y, PAVEMENT_Z) for x, y in pavement]
-    far = [(x, y, PAVEMENT_Z) for x, y in ((27, 8), (-26, 8), (-20, -1.3), (22, -1.4), (38, 8), (-38, 8), (36, -1.4))]
-    far += [(rng.uniform(-60, 60), side, 0.0) for side in (front_y + 13, front_y + 18, -22, -27) for _ in range(6)]
+    pavement = [(-5.6, 7.9), (5.0, 7.85), (15.8, 8.0), (-14.8, 7.9), (-7.4, -1.2), (9.4, -1.6)]
+    near = [(x + rng.uniform(-1.2, 1.2), y, PAVEMENT_Z) for x, y in pavement]
+    far = [
+        (x, y, PAVEMENT_Z)
+        for x, y in ((27, 8), (-26, 8), (-20, -1.3), (22, -1.4), (38, 8), (-38, 8), (36, -1.4))
+    ]
+    far += [
+        (rng.uniform(-60, 60), side, 0.0) for side in (front_y + 13, front_y + 18, -22, -27) for _ in range(6)
+    ]
     angle, away = rng.uniform(0, 2 * np.pi, 190), rng.uniform(75, 170, 190)
     horizon = np.stack([away * np.cos(angle), away * np.sin(angle), np.full(190, -0.1)], axis=1)
     horizon = horizon[np.abs(horizon[:, 1] - 3.0) > 9.0]
-    middling = b.broadleaf(seed + 2, bark, leaves[0], height=7.5, detail=0.2)
+    middling = b.broadleaf(seed + 2, bark, leaves[0], height=7.5, detail=0.12)
     distant = b.broadleaf(seed + 3, bark, leaves[1], height=9.0, detail=0.02)
-    tufts = np.column_stack([
-        rng.uniform(-14, 14, 90), rng.choice([KERB_Y[1] + 0.2, front_y - 0.1, -3.3], 90), np.full(90, PAVEMENT_Z)
-    ])  # fmt: skip
+    edge_y = rng.choice([KERB_Y[1] + 0.2, front_y - 0.1, -3.3], 90)
+    tufts = np.column_stack([rng.uniform(-14, 14, 90), edge_y, np.full(90, PAVEMENT_Z)])
     return [
         *(b.copies(lime, b.scattered(rng, near[k::2], (0.85, 1.15))) for k, lime in enumerate(limes)),
         b.copies(middling, b.scattered(rng, far)),

@@ -49,7 +49,7 @@ def run_on_cluster(
             message = {"task": task.to_json(), "inputs": digest(cell_inputs(task)), "limits": asdict(limits)}
             future = client.submit(run_isolated, message, timeout_s, pure=False)
             index_of[future] = index
-        for future in as_completed(index_of):
+        for future in as_completed(index_of, loop=client.loop):
             death = future.exception()
             yield index_of[future], _died(death) if death else Outcome(**future.result())
 

@@ -40,7 +40,7 @@ class Tolerance:
             return "worse" if math.isnan(now) else "better"
         if accepted == now:
             return "same"  # infinities too
-        if abs(now - accepted) <= self.relative * abs(accepted) + self.absolute:
+        if math.isfinite(accepted) and abs(now - accepted) <= self.relative * abs(accepted) + self.absolute:
             return "same"
         return "better" if (now < accepted) == (self.better == "lower") else "worse"
 

@@ -10,6 +10,7 @@ from pydantic import ValidationError
 
 from rectbench.bench.plugins import Plugin
 from rectbench.errors import InvalidInput, InvalidResult, UnknownName
+from rectbench.metrics.coverage import in_frame
 from rectbench.warps import Options, Problem, Rectification, Warp
 
 
@@ -58,3 +59,5 @@ def check_result(method: str, result: object, problem: Problem) -> None:
             raise InvalidResult(f"{method}: {side}.forward gives {mapped.shape} for {pixels.shape} pixels")
         if np.isinf(mapped).any() or not np.isfinite(mapped).any():
             raise InvalidResult(f"{method}: {side}.forward gives no finite pixel, or an infinite one")
+        if not in_frame(mapped, result.size).any():
+            raise InvalidResult(f"{method}: no {side} pixel lands in the rectified image: it is empty")

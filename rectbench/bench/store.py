@@ -69,10 +69,10 @@ class Store:
         try:
             manifest = json.loads((place / MANIFEST).read_bytes())
             wrong = [name for name, known in manifest["files"].items() if file_digest(place / name) != known]
-        except FileNotFoundError as missing:
+        except OSError as error:
             if not place.exists():
                 return None
-            wrong = [Path(missing.filename).name]
+            wrong = [Path(error.filename or MANIFEST).name]
         except (ValueError, KeyError, TypeError, AttributeError):
             wrong = [MANIFEST]
         if wrong:

@@ -203,11 +203,11 @@ class JetNamespace:
 
     def minimum(self, x: Any, y: Any) -> Jet:
         a, b = constant(x), constant(y)
-        return self.where(a.value < b.value, a, b)
+        return self.where(a.value <= b.value, a, b)
 
     def maximum(self, x: Any, y: Any) -> Jet:
         a, b = constant(x), constant(y)
-        return self.where(a.value > b.value, a, b)
+        return self.where(a.value >= b.value, a, b)
 
 
 @overload

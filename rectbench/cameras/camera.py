@@ -30,8 +30,9 @@ class Camera(Projection):
     ----------
     model : name of the projection model, see `rectbench.cameras.lens.LENSES`.
     size : (width, height) of the image in pixels.
-    params : the model's parameters by name; what is left out is 0. `fx fy cx cy` in pixels, pixel
-        (0, 0) being the centre of the top-left pixel; `poly` and `inverse_poly` of ocam are sequences.
+    params : the model's parameters by name; what is left out is 0 (ocam's `c`: 1). `fx fy cx cy` in
+        pixels, pixel (0, 0) being the centre of the top-left pixel; ocam's `poly` and `inverse_poly`
+        are sequences.
     max_angle_deg : angle from the axis beyond which the lens shows nothing (the image circle);
         None where the model's own domain is the only bound.
 
@@ -76,7 +77,7 @@ class Camera(Projection):
 
     def project_formula(self, c: Any, x: Any, y: Any, z: Any, xp: Any) -> tuple[Any, Any, Any]:
         u, v, ok = lens_named(self.model).project(c, x, y, z, xp)
-        return u, v, ok & (z >= c.cos_max_angle * xp.sqrt(x * x + y * y + z * z) - RAY_SLACK)
+        return u, v, ok & (z >= (c.cos_max_angle - RAY_SLACK) * xp.sqrt(x * x + y * y + z * z))
 
     def unproject_formula(self, c: Any, u: Any, v: Any, xp: Any) -> tuple[Any, Any, Any, Any]:
         x, y, z, ok = lens_named(self.model).unproject(c, u, v, xp)

@@ -18,8 +18,8 @@ from rectbench.cameras.domain import PIXEL_SLACK
 
 MOST_STEPS = 80
 """Bisection alone takes 53 steps; Newton's rarely more than six."""
-LONGEST = 0.75
-"""Share of the bracket that one Newton step may cross; else two points can call each other for ever."""
+ROUNDING = 2e-16
+"""A target missed by this little, relative to its size, cannot be told from one that is hit."""
 SETTLED = 4e-16
 """A step this small, relative to where it stands, is rounding."""
 
@@ -30,18 +30,20 @@ def invert_monotone(
     """x in [low, high] with function(x) = target, by Newton steps held inside a shrinking bracket.
 
     `function` returns value and slope and rises over the bracket. A step that would leave the
-    bracket, or cross most of it, becomes a bisection, so a flat stretch slows it down and never
-    throws it out. A target beyond the ends gives the nearer end.
+    bracket, or turn back by more than half of the last one (two points can call each other for
+    ever), becomes a bisection: a flat stretch slows it down and never throws it out. A target beyond
+    the ends gives the nearer end.
     """
 
-    def step(x: Any, low: Any, high: Any, _: Any, count: Any) -> tuple[Any, ...]:
+    def step(x: Any, low: Any, high: Any, last: Any, count: Any) -> tuple[Any, ...]:
         value, slope = function(x)
-        above = value > target
-        high = xp.where(above, x, high)
-        low = xp.where(above, low, x)
-        move = (target - value) / slope
+        miss = target - value
+        high = xp.where(miss < 0.0, x, high)
+        low = xp.where(miss < 0.0, low, x)
+        move = xp.where(xp.abs(miss) <= ROUNDING * xp.abs(target), 0.0, miss / slope)
         newton = x + move
-        trusted = (newton >= low) & (newton <= high) & (xp.abs(move) <= LONGEST * (high - low))
+        onward = (move * last >= 0.0) | (xp.abs(move) <= 0.5 * xp.abs(last))
+        trusted = (newton >= low) & (newton <= high) & onward
         following = xp.where(trusted, newton, 0.5 * (low + high))
         return following, low, high, following - x, count + 1.0
 
@@ -49,34 +51,30 @@ def invert_monotone(
         return (xp.abs(move) > SETTLED * xp.abs(x)) & (count < MOST_STEPS)
 
     nought = 0.0 * target
-    state = (start + nought, low + nought, high + nought, nought + math.inf, nought)
+    low, high = low + nought, high + nought
+    state = (start + nought, low, high, 4.0 * (high - low), nought)
     return repeat_until_settled(step, unsettled, state, xp)[0]
 
 
 def inverse(
-    formula: Callable[[Any, Any, Any], Any],
-    c: Any,
-    target: Any,
-    low: Any,
-    high: Any,
-    start: Any,
-    xp: Any,
+    formula: Callable[[Any, Any, Any], Any], c: Any, target: Any, high: Any, most: Any, start: Any, xp: Any
 ) -> Any:
-    """x in [low, high] with formula(c, x, xp) = target; see `invert_monotone`, the slope being a jet's.
+    """x in [0, high] with formula(c, x, xp) = target; the formula rises from 0 there, up to `most`.
 
-    Where the target is a jet itself, the answer carries its derivatives: those of the formula's
-    inverse, not of the steps that led there.
+    See `invert_monotone`; the slope is a jet's. A target beyond `most` gives `high`. Where the target
+    is a jet itself, the answer carries its derivatives: those of the inverse, not of the steps to it.
     """
     if isinstance(target, Jet):
-        low, high, start = (constant(bound).value for bound in (low, high, start))
-        x = inverse(formula, c, target.value, low, high, start, xp.xp)
+        high, most, start = (constant(number).value for number in (high, most, start))
+        x = inverse(formula, c, target.value, high, most, start, xp.xp)
         return target.chain(x, 1.0 / formula(c, *variables(x), xp).partials[0])
 
     def value_and_slope(x: Any) -> tuple[Any, Any]:
         jet = formula(as_jets(c), *variables(x), JetNamespace(xp))
         return jet.value, jet.partials[0]
 
-    return invert_monotone(value_and_slope, target, low, high, start, xp)
+    reached, start = xp.minimum(target, most), xp.minimum(start, high)
+    return invert_monotone(value_and_slope, reached, 0.0, high, start, xp)
 
 
 def invert_in_disk(

@@ -25,51 +25,40 @@ def radiance(
 ) -> NDArray[np.float32]:
     """Mean radiance [H, W, 3] of `spp` samples a pixel, box-filtered, each sample held to `brightest`.
 
-    A pixel's samples are spread over it on a jittered grid. Bands of whole rows are rendered one
-    after another, so the memory is bounded; each pixel adds its samples in a fixed order, so the
-    same call gives the same bits on any number of threads. `spp` is a power of two.
+    Bands of whole rows are rendered one after another, so the memory is bounded; each pixel adds
+    its samples in a fixed order, so the same call gives the same bits on any number of threads.
+    `spp` is a power of two.
     """
     mi, dr = mitsuba(), drjit()
-
     width, height = (int(n) for n in sensor.film().size())
     rows = max(1, SAMPLES_AT_ONCE // (width * spp))
     image = np.empty((height, width, 3), dtype=np.float32)
-    sampler = mi.load_dict({"type": "independent", "sample_count": spp})
+    # Stratified in every pair of dimensions: as clean as twice the independent samples, at their cost.
+    # The sampler wants a square number, so a pixel of 32 samples holds two patterns of 16.
+    pattern = 1 << (spp.bit_length() - 1) // 2 * 2
+    sampler = mi.load_dict({"type": "multijitter", "sample_count": pattern})
+    sampler.set_samples_per_wavefront(pattern)
     for top in range(0, height, rows):
         bottom = min(top + rows, height)
         count = (bottom - top) * width * spp
-        sampler.seed(mi.UInt32(dr.opaque(mi.UInt32, _band_seed(seed, top))), count)
-        position = _film_positions(sampler, count, top, (width, height), spp)
+        # As literals, these numbers would be baked into the kernel: every size would compile anew.
+        columns, first, ceiling = (
+            dr.opaque(mi.UInt32, width),
+            dr.opaque(mi.UInt32, top * width),
+            dr.opaque(mi.Float, brightest),
+        )
+        sampler.seed(dr.opaque(mi.UInt32, _band_seed(seed, top)), count)
+        pixel = first + dr.arange(mi.UInt32, count) // dr.opaque(mi.UInt32, spp)
+        row = pixel // columns
+        corner = mi.Point2f(pixel - row * columns, row)
+        position = (corner + sampler.next_2d()) / dr.opaque(mi.Vector2f, (width, height))
         ray, weight = sensor.sample_ray_differential(mi.Float(0.0), mi.Float(0.5), position, mi.Point2f(0.5))
         colour, _, _ = integrator.sample(scene, sampler, ray)
-        ceiling = dr.opaque(mi.Float, brightest)
         colour = dr.select(dr.all(dr.isfinite(colour)), weight * dr.minimum(colour, ceiling), 0.0)
         dr.eval(colour)
         sums = [dr.block_sum(channel, spp).numpy() for channel in colour]
         image[top:bottom] = np.stack(sums, axis=-1).reshape(bottom - top, width, 3) / spp
     return image
-
-
-def _film_positions(sampler: Any, count: int, top: int, size: tuple[int, int], spp: int) -> Any:
-    """Positions in [0, 1]^2 of `count` samples of the rows from `top` on, a pixel's samples in a row."""
-    mi, dr = mitsuba(), drjit()
-
-    def opaque(number: int) -> Any:
-        # As literals these would be baked into the kernel: every image size would compile anew.
-        return dr.opaque(mi.UInt32, number)
-
-    bits = spp.bit_length() - 1
-    across_bits = (bits + 1) // 2
-    index = dr.arange(mi.UInt32, count)
-    pixel = opaque(top * size[0]) + (index >> opaque(bits))
-    row = pixel // opaque(size[0])
-    column = pixel - row * opaque(size[0])
-    cell = index & opaque(spp - 1)
-    cell_row = cell >> opaque(across_bits)
-    cell_column = cell - (cell_row << opaque(across_bits))
-    cells = dr.opaque(mi.Vector2f, (1 << across_bits, 1 << (bits - across_bits)))
-    within = (mi.Point2f(cell_column, cell_row) + sampler.next_2d()) / cells
-    return (mi.Point2f(column, row) + within) / dr.opaque(mi.Vector2f, size)
 
 
 def _band_seed(seed: int, top: int) -> int:

@@ -31,6 +31,8 @@ ROOM_REFLECTANCE = 0.5
 ROOM_MARGIN_M = 4.0
 """What stands farther than this beyond all lamps is not the room: a garden, another building."""
 
+LEAST_ROOM_M2 = 10.0
+
 LEAST_COSINE = 0.05
 """Floor of the cosines by which a lamp is chosen, so that one half below the horizon stays possible."""
 
@@ -64,12 +66,12 @@ def room_light(world: World) -> Surroundings:
     if not world.lamps:
         ambient = np.asarray(world.ambient, dtype=np.float64)
         return Surroundings(ambient, ambient, ambient)
-    vertices = np.concatenate([np.asarray(mesh.vertices) for mesh in world.meshes])
-    centres = np.array([lamp.centre for lamp in world.lamps])
+    centres = np.array([lamp.centre for lamp in world.lamps], dtype=np.float64)
+    vertices = np.concatenate([centres, *(np.asarray(mesh.vertices) for mesh in world.meshes)])
     low = np.maximum(vertices.min(axis=0), centres.min(axis=0) - ROOM_MARGIN_M)
     high = np.minimum(vertices.max(axis=0), centres.max(axis=0) + ROOM_MARGIN_M)
     x, y, z = high - low
-    area = 2.0 * (x * y + y * z + z * x)
+    area = max(2.0 * (x * y + y * z + z * x), LEAST_ROOM_M2)
     flux = sum(np.pi * lamp.size_m[0] * lamp.size_m[1] * np.asarray(lamp.radiance) for lamp in world.lamps)
     returned = flux / area * ROOM_REFLECTANCE / (1.0 - ROOM_REFLECTANCE) / np.pi
     return Surroundings(0.7 * returned, returned, 1.5 * returned)
@@ -103,6 +105,8 @@ def _integrator_class(variant: str) -> Any:
             self.fill = _colours(fill)
             self.outside = _colours(outside)
             self.reach = mi.Float(OUTDOOR_REACH_M if outdoors else INDOOR_REACH_M)
+            # Indoors a ray that finds no wall at all left through a window.
+            self.sight = mi.Float(OUTDOOR_REACH_M if outdoors else np.inf)
             # An idle lamp keeps the kernel the same outdoors.
             lamps = [(lamp.centre, lamp.size_m, lamp.radiance) for lamp in world.lamps]
             self.lamp_count = mi.UInt32(len(lamps))
@@ -142,9 +146,10 @@ def _integrator_class(variant: str) -> Any:
             local = mi.warp.square_to_cosine_hemisphere(sampler.next_2d(active))
             direction = mi.Frame3f(normal).to_world(local)
             ray = si.spawn_ray(direction)
-            ray.maxt = self.reach
-            occluded = scene.ray_test(ray, active)
-            return _from(self.fill, direction) * dr.select(occluded, OCCLUDED_SHARE, 1.0)
+            ray.maxt = self.sight
+            found = scene.ray_intersect_preliminary(ray, active=active)
+            room = _from(self.fill, direction) * dr.select(found.t < self.reach, OCCLUDED_SHARE, 1.0)
+            return dr.select(found.is_valid(), room, _from(self.outside, direction))
 
         def _sunlight(self, scene: Any, si: Any, normal: Any, active: Any) -> Any:
             cosine = dr.dot(normal, self.sun)

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rectbench.cameras.arrays import FloatArray
-from rectbench.errors import InvalidResult
+from rectbench.rendering.checks import check_material, check_world, checked_mesh, checked_placements
 from rectbench.rendering.variant import mitsuba
 from rectbench.rendering.world import Lamp, Material, Mesh, World
 
@@ -70,10 +70,11 @@ def _load(scene: dict[str, Any]) -> Any:
 def _geometry(world: World, bsdf_of: Callable[[Material], dict[str, Any]]) -> dict[str, Any]:
     """All meshes and instances; meshes that share a Material object share its BSDF and texture."""
     mi = mitsuba()
+    check_world(world)
     bsdfs: dict[int, Any] = {}
     for mesh in _meshes(world):
         if id(mesh.material) not in bsdfs:
-            _check_material(mesh.material, mesh.name)
+            check_material(mesh.material, mesh.name)
             bsdfs[id(mesh.material)] = mi.load_dict(bsdf_of(mesh.material), optimize=False)
 
     def shape(mesh: Mesh) -> Any:
@@ -85,7 +86,7 @@ def _geometry(world: World, bsdf_of: Callable[[Material], dict[str, Any]]) -> di
     for i, instances in enumerate(world.instances):
         group = {f"mesh-{j}": shape(mesh) for j, mesh in enumerate(instances.meshes)}
         scene[f"group-{i}"] = {"type": "shapegroup", **group}
-        for j, placement in enumerate(_checked_placements(instances.placements, instances.name)):
+        for j, placement in enumerate(checked_placements(instances.placements, instances.name)):
             scene[f"instance-{i}-{j}"] = {
                 "type": "instance",
                 "shapegroup": {"type": "ref", "id": f"group-{i}"},
@@ -102,7 +103,7 @@ def _meshes(world: World) -> Iterator[Mesh]:
 
 def _mesh(mesh: Mesh, bsdf: Any) -> Any:
     mi = mitsuba()
-    vertices, faces, uv = _checked_mesh(mesh)
+    vertices, faces, uv = checked_mesh(mesh)
     properties = mi.Properties()
     properties["bsdf"] = bsdf
     loaded = mi.Mesh(
@@ -158,37 +159,3 @@ def _lamp_pose(lamp: Lamp) -> FloatArray:
     pose = np.diag([lamp.size_m[0] / 2, -lamp.size_m[1] / 2, -1.0, 1.0])
     pose[:3, 3] = lamp.centre
     return pose
-
-
-def _checked_mesh(mesh: Mesh) -> tuple[NDArray[np.float32], NDArray[np.uint32], NDArray[np.float32]]:
-    """The buffers of a mesh; an index out of range would crash the process inside Embree."""
-    vertices = np.asarray(mesh.vertices, dtype=np.float32)
-    faces, uv = np.asarray(mesh.faces), np.asarray(mesh.uv, dtype=np.float32)
-    if vertices.ndim != 2 or vertices.shape[1] != 3 or not np.isfinite(vertices).all():
-        raise InvalidResult(f"mesh {mesh.name}: vertices {vertices.shape} are not finite [V, 3]")
-    if faces.ndim != 2 or faces.shape[1] != 3 or not np.issubdtype(faces.dtype, np.integer):
-        raise InvalidResult(
-            f"mesh {mesh.name}: faces are {faces.dtype} {faces.shape}; expected integers [F, 3]"
-        )
-    if faces.size and (faces.min() < 0 or faces.max() >= len(vertices)):
-        raise InvalidResult(f"mesh {mesh.name}: a face names a vertex outside 0..{len(vertices) - 1}")
-    if uv.shape != (len(vertices), 2) or not np.isfinite(uv).all():
-        raise InvalidResult(f"mesh {mesh.name}: uv {uv.shape} is not finite [{len(vertices)}, 2]")
-    return vertices, faces.astype(np.uint32), uv
-
-
-def _check_material(material: Material, mesh: str) -> None:
-    texels = np.asarray(material.reflectance)
-    if texels.shape != (3,) and (texels.ndim != 3 or texels.shape[2] != 3 or 0 in texels.shape):
-        raise InvalidResult(
-            f"mesh {mesh}: reflectance has shape {texels.shape}; expected a colour or [H, W, 3]"
-        )
-    if not np.isfinite(texels).all() or texels.min() < 0 or texels.max() > 1:
-        raise InvalidResult(f"mesh {mesh}: reflectance leaves [0, 1] or is not finite")
-
-
-def _checked_placements(placements: FloatArray, name: str) -> FloatArray:
-    poses = np.asarray(placements, dtype=np.float64)
-    if poses.ndim != 3 or poses.shape[1:] != (4, 4) or not np.isfinite(poses).all():
-        raise InvalidResult(f"instances {name}: placements {poses.shape} are not finite [K, 4, 4]")
-    return poses

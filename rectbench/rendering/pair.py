@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from numbers import Integral
 from typing import Any, Literal, get_args, overload
 
 import numpy as np
 
+from rectbench.cameras.arrays import FloatArray
 from rectbench.errors import InvalidInput, UnknownName
-from rectbench.rendering import mitsuba_scene
-from rectbench.rendering.images import StereoPair, radiance, srgb8
+from rectbench.rendering.images import Image, StereoPair, radiance, srgb8
 from rectbench.rendering.integrator import fast_integrator
+from rectbench.rendering.mitsuba_scene import fast_scene, path_scene
 from rectbench.rendering.sensor import load_sensor
 from rectbench.rendering.tracing import posed_cameras, trace_truth
 from rectbench.rendering.truth import Truth
@@ -75,55 +78,72 @@ def render_pair(
 
     Raises InvalidInput for an argument that cannot be used, Unavailable where nothing can render.
     """
-    _check(world, rig, seed, spp, quality)
-    scene, integrator, exposure = _staged(world, quality)
-    pair = None
-    if images:
+    _check(rig, seed, spp)
+    stage = Stage.of(world, quality)
+    pair = stage.photograph(rig, seed=seed, spp=spp) if images else None
+    return pair, stage.survey(rig) if truth else None
+
+
+@dataclass(frozen=True, eq=False)
+class Stage:
+    """A world set up in the renderer, for as many rigs as are to be rendered in it."""
+
+    scene: Any
+    """The `mi.Scene`."""
+    integrator: Any
+    """The `mi.SamplingIntegrator`."""
+    exposure: float
+    world_from_left: FloatArray
+
+    @classmethod
+    def of(cls, world: World | XmlWorld, quality: str = "path") -> Stage:
+        """Set a world up. Raises InvalidInput for what is no world or quality, Unavailable without LLVM."""
+        if quality not in QUALITIES:
+            raise UnknownName("quality", str(quality), QUALITIES)
+        if isinstance(world, World) and quality == "fast":
+            scene, integrator, exposure = fast_scene(world), fast_integrator(world), world.fast_exposure
+        elif isinstance(world, World):
+            scene, integrator, exposure = path_scene(world), _path_integrator(), world.exposure
+        elif isinstance(world, XmlWorld):
+            # Such a scene has lights of any kind: its fast picture is Mitsuba's direct light.
+            integrator = _path_integrator() if quality == "path" else mitsuba().load_dict({"type": "direct"})
+            scene, exposure = world.scene, world.exposure
+        else:
+            raise InvalidInput(f"world is {type(world).__name__}; expected a World, or one of xml_world")
+        return cls(scene, integrator, exposure, world.world_from_left)
+
+    def photograph(self, rig: Rig, *, seed: int = 0, spp: int = 64) -> StereoPair:
+        """The images of a rig, see `render_pair`."""
+        _check(rig, seed, spp)
         left, right = (
-            srgb8(
-                radiance(
-                    scene,
-                    load_sensor(camera, pose),
-                    integrator,
-                    spp=spp,
-                    seed=_camera_seed(seed, side),
-                    brightest=BRIGHTEST / exposure,
-                ),
-                exposure,
-            )
-            for side, (camera, pose) in enumerate(posed_cameras(rig, world.world_from_left))
+            self._image(load_sensor(camera, pose), _camera_seed(seed, side), spp)
+            for side, (camera, pose) in enumerate(posed_cameras(rig, self.world_from_left))
         )
-        pair = StereoPair(left, right)
-    return pair, trace_truth(scene, rig, world.world_from_left) if truth else None
+        return StereoPair(left, right)
+
+    def survey(self, rig: Rig) -> Truth:
+        """The truth about a rig; the same at every quality."""
+        return trace_truth(self.scene, rig, self.world_from_left)
+
+    def _image(self, sensor: Any, seed: int, spp: int) -> Image:
+        brightest = BRIGHTEST / self.exposure
+        linear = radiance(self.scene, sensor, self.integrator, spp=spp, seed=seed, brightest=brightest)
+        return srgb8(linear, self.exposure)
 
 
-def _staged(world: World | XmlWorld, quality: str) -> tuple[Any, Any, float]:
-    """The Mitsuba scene, its integrator, and the exposure of its radiance."""
-    mi = mitsuba()
-    if isinstance(world, World) and quality == "fast":
-        return mitsuba_scene.fast_scene(world), fast_integrator(world), world.fast_exposure
-    path = {"type": "path", "max_depth": PATH_DEPTH}
-    # A user's own scene has lights of any kind: its fast picture is Mitsuba's direct light.
-    integrator = mi.load_dict(path if quality == "path" else {"type": "direct"})
-    if isinstance(world, World):
-        return mitsuba_scene.path_scene(world), integrator, world.exposure
-    return world.scene, integrator, world.exposure
+def _path_integrator() -> Any:
+    return mitsuba().load_dict({"type": "path", "max_depth": PATH_DEPTH})
 
 
 def _camera_seed(seed: int, side: int) -> int:
     return int(np.random.SeedSequence([seed, side]).generate_state(1)[0])
 
 
-def _check(world: object, rig: object, seed: object, spp: object, quality: str) -> None:
-    if not isinstance(world, World | XmlWorld):
-        raise InvalidInput(
-            f"world is {type(world).__name__}; expected a World, or a scene read with xml_world"
-        )
+def _check(rig: object, seed: object, spp: object) -> None:
     if not isinstance(rig, Rig):
         raise InvalidInput(f"rig is {type(rig).__name__}; expected a Rig")
-    if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
+    if isinstance(seed, bool) or not isinstance(seed, Integral) or seed < 0:
         raise InvalidInput(f"seed is {seed!r}; expected a whole number from 0")
-    if isinstance(spp, bool) or not isinstance(spp, int) or not 1 <= spp <= MOST_SAMPLES or spp & (spp - 1):
+    whole = isinstance(spp, Integral) and not isinstance(spp, bool)
+    if not whole or not 1 <= spp <= MOST_SAMPLES or spp & (spp - 1):  # type: ignore[operator]
         raise InvalidInput(f"spp is {spp!r}; expected a power of two from 1 to {MOST_SAMPLES}")
-    if quality not in QUALITIES:
-        raise UnknownName("quality", str(quality), QUALITIES)

@@ -54,7 +54,8 @@ def ray_table(camera: Camera) -> NDArray[np.float32]:
         v = np.arange(top, min(top + ROWS_AT_ONCE, height)) / k - 1.0
         rays, ok = camera.unproject(np.stack(np.meshgrid(u, v), axis=-1))
         rows = table[top : top + len(v)]
-        rows[..., :3] = np.where(ok[..., None], rays, 0.0) * np.diag(CV_FROM_MITSUBA)[:3]
+        # Even where nothing is seen a ray has a direction: NaN times a weight of 0 would be NaN.
+        rows[..., :3] = np.where(ok[..., None], rays, (0.0, 0.0, 1.0)) * np.diag(CV_FROM_MITSUBA)[:3]
         rows[..., 3] = ok
     _extrapolate(table)
     return table

@@ -12,9 +12,7 @@ from numpy.typing import ArrayLike
 from rectbench.cameras.arrays import FloatArray
 from rectbench.errors import InvalidInput
 from rectbench.rendering import sensor
-
-POSE_TOLERANCE = 1e-4
-"""Largest entry of RᵀR - 1 in a pose: Mitsuba keeps its transforms in float32."""
+from rectbench.rendering.checks import pose_fault
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,13 +66,9 @@ def _sensor_pose(scene: Any, path: Path) -> FloatArray:
 
 def _checked_pose(pose: FloatArray, path: Path) -> FloatArray:
     """The pose with its rotation made exactly orthonormal."""
-    ok = pose.shape == (4, 4) and np.isfinite(pose).all() and np.array_equal(pose[3], [0, 0, 0, 1])
-    if not ok or np.abs(pose[:3, :3].T @ pose[:3, :3] - np.eye(3)).max() > POSE_TOLERANCE:
-        raise InvalidInput(
-            f"{path}: the left camera's pose is no rigid motion; expected [4, 4] world from camera"
-        )
-    if np.linalg.det(pose[:3, :3]) < 0:
-        raise InvalidInput(f"{path}: the left camera's pose mirrors; expected a rotation")
+    fault = pose_fault(pose)
+    if fault is not None:
+        raise InvalidInput(f"{path}: the left camera's pose {fault}; expected a rigid motion [4, 4]")
     u, _, vt = np.linalg.svd(pose[:3, :3])
     rigid = pose.copy()
     rigid[:3, :3] = u @ vt

@@ -119,6 +119,8 @@ def _scale(chart: BarChart) -> tuple[bool, tuple[float, float]]:
     positive = [value for value in least + largest if value > 0]
     if not positive:
         return False, (0.0, 1.0)
+    if max(positive) <= chart.floor:
+        return True, (0.1 * chart.floor, 1e3 * chart.floor)  # all below what is shown as a number
     low, high = min(positive), max(positive)
     high = max(high, chart.reference or 0.0)
     if high / low < _LOG_FROM:

@@ -23,6 +23,7 @@ class Column:
     better : which way is good, None where neither is.
     average : how cells are averaged. RMS values are pooled as such, a maximum stays one.
     floor : shown numbers below this are shown as "<floor".
+    is_count : whether the number counts things, and is shown whole.
     meaning : one sentence for the glossary.
     """
 
@@ -34,6 +35,7 @@ class Column:
     scale: float = 1.0
     average: Average = "mean"
     floor: float = 0.0
+    is_count: bool = False
 
     @property
     def is_percentage(self) -> bool:
@@ -62,6 +64,10 @@ def _milliseconds(key: str, heading: str, meaning: str) -> Column:
     return Column(key, heading, "ms", "lower", meaning, scale=1000.0)
 
 
+def _count(key: str, heading: str, meaning: str) -> Column:
+    return Column(key, heading, meaning=meaning, is_count=True)
+
+
 METRICS: tuple[Column, ...] = (
     _pixels(
         "row_error_mean_px",
@@ -70,7 +76,7 @@ METRICS: tuple[Column, ...] = (
         "rectified images. 0 for every calibrated method if the pose is exact.",
     ),
     _pixels("row_error_median_px", "row error, median", "Median of the same distances."),
-    _pixels("row_error_p95_px", "row error, 95 %", "95th percentile of the same distances."),
+    _pixels("row_error_p95_px", "row error, p95", "95th percentile of the same distances."),
     _pixels("row_error_max_px", "row error, max", "Largest of the same distances.", "max"),
     _pixels("row_error_rms_px", "row error, RMS", "Root mean square of the same distances.", "rms"),
     _share("row_error_below_1px", "rows ≤ 1 px", "higher", "Share of correspondences at most one row apart."),
@@ -79,17 +85,15 @@ METRICS: tuple[Column, ...] = (
         "row error, source",
         "Row error in pixels of the source images, so that shrinking the output gains nothing.",
     ),
-    _pixels("row_error_source_p95_px", "row error, source, 95 %", "95th percentile of those."),
-    Column(
-        "row_error_matches", "correspondences", "", None, "True correspondences that the error is taken over."
-    ),
+    _pixels("row_error_source_p95_px", "row error, source, p95", "95th percentile of those."),
+    _count("row_error_matches", "correspondences", "True correspondences that the row error is taken over."),
     _pixels(
         "row_error_features_mean_px",
         "row error, SIFT",
         "Mean row error of SIFT matches found in the images; it holds the detector's own noise.",
     ),
     _pixels("row_error_features_median_px", "row error, SIFT, median", "Median row error of SIFT matches."),
-    Column("row_error_features_matches", "SIFT matches", "", None, "SIFT matches that error is taken over."),
+    _count("row_error_features_matches", "SIFT matches", "SIFT matches that their row error is taken over."),
     _distortion(
         "log_distortion",
         "log distortion",
@@ -113,7 +117,7 @@ METRICS: tuple[Column, ...] = (
         "distortion_stretched", "distortion, stretched", "L after the best scales of width and of height."
     ),
     _distortion("distortion_native_median", "distortion, median", "Median of native L over the pixels."),
-    _distortion("distortion_native_p95", "distortion, 95 %", "95th percentile of native L over the pixels."),
+    _distortion("distortion_native_p95", "distortion, p95", "95th percentile of native L over the pixels."),
     _distortion(
         "distortion_native_all_pixels", "distortion, all pixels", "Native L over every pixel, not the grid."
     ),

@@ -29,7 +29,8 @@ if TYPE_CHECKING:
 SAMPLES_ACROSS = 200
 _BAR_INCHES = 0.72
 _GAP = 0.02
-_LEAST_SHOWN = 1e-4
+_LEAST_SHOWN, _MOST_SHOWN = 1e-4, 1e2
+"""At L = 100 a pixel has become eleven: what lies beyond is lost all the same, and would grey the rest."""
 _SIDES: tuple[Side, Side] = ("left", "right")
 
 
@@ -104,7 +105,7 @@ def _limits(maps: Sequence[SideMap]) -> tuple[float, float]:
         return _LEAST_SHOWN, 1.0
     low, high = np.quantile(values, [0.02, 0.98])
     bottom = 10.0 ** math.floor(math.log10(max(low, _LEAST_SHOWN)))
-    top = 10.0 ** math.ceil(math.log10(max(high, _LEAST_SHOWN)))
+    top = 10.0 ** math.ceil(math.log10(min(max(high, _LEAST_SHOWN), _MOST_SHOWN)))
     return bottom, max(top, 10 * bottom)
 
 

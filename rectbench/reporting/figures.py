@@ -11,6 +11,7 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from rectbench.bench.progress import Advance
 from rectbench.reporting.bars import bar_chart, draw_bars
 from rectbench.reporting.columns import column
 from rectbench.reporting.distortion_maps import draw_distortion_maps
@@ -28,9 +29,6 @@ if TYPE_CHECKING:
 EXTENSIONS = ("pdf", "svg", "png")
 GROUPS = ("bars", "scatter", "pairs", "maps")
 """The kinds of figures; a report may ask for some of them."""
-
-Progress = Callable[[str, int, int], None]
-"""Told what is done next, how much is done, how much there is."""
 
 
 @dataclass(frozen=True)
@@ -105,6 +103,8 @@ def _bars(
     words = [caption]
     if chart.reference is not None:
         words.append(f"The dashed line is at {chart.reference:g} {column(key).unit}.")
+    if len({r.seed for r in run.results}) > 1:
+        words.append("Bars are means over seeds, thin lines their range.")
     if run.failures:
         words.append("A cross marks a method that could not be measured there.")
     return Plan(name, "bars", title, " ".join(words), chart, lambda: draw_bars(chart))
@@ -168,20 +168,18 @@ def _representative(run: Run, rig: str) -> tuple[Result, ...]:
 
 
 def draw_changed(
-    run: Run, plans: list[Plan], known: Mapping[str, str], progress: Progress | None
+    run: Run, plans: list[Plan], known: Mapping[str, str], advance: Advance
 ) -> tuple[list[Drawn], dict[str, str]]:
     """Draw the plans whose digest is not the `known` one, or whose files are gone.
 
     Returns what the page shows and the digests of what is drawn now. Where a figure cannot be drawn,
-    an earlier one stays, and it is tried again next time.
+    an earlier one stays, and it is tried again next time. `advance` is called after each.
     """
     drawn, digests = [], {}
-    for i, plan in enumerate(plans):
+    for plan in plans:
         digest, error = plan.digest, ""
         there = all((run.folder / plan.path(extension)).is_file() for extension in EXTENSIONS)
         if known.get(plan.name) != digest or not there:
-            if progress:
-                progress(plan.title, i, len(plans))
             try:
                 _draw(run.folder, plan)
                 there = True
@@ -190,6 +188,7 @@ def draw_changed(
         if not error:
             digests[plan.name] = digest
         drawn.append(Drawn(plan, error, there))
+        advance()
     return drawn, digests
 
 

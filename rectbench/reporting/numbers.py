@@ -11,6 +11,7 @@ MISSING = "–"
 
 _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _FIXED_RANGE = (1e-3, 1e4)
+_LONGEST_COUNT = 1e6
 
 
 def shown(value: float | None, column: Column) -> str:
@@ -22,6 +23,8 @@ def shown(value: float | None, column: Column) -> str:
         return "∞" if scaled > 0 else "−∞"
     if column.is_percentage:
         return _percentage(scaled)
+    if column.is_count and abs(scaled) < _LONGEST_COUNT:
+        return str(round(scaled))
     if 0 <= scaled < column.floor:
         return f"<{_power_of_ten(round(math.log10(column.floor)))}"
     return three_digits(scaled)

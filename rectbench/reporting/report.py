@@ -6,7 +6,8 @@ import json
 from pathlib import Path
 from typing import Any
 
-from rectbench.reporting.figures import EXTENSIONS, GROUPS, Progress, draw_changed, planned_figures
+from rectbench.bench.progress import Progress
+from rectbench.reporting.figures import EXTENSIONS, GROUPS, draw_changed, planned_figures
 from rectbench.reporting.page import render_page
 from rectbench.reporting.run_facts import wanted_groups
 from rectbench.reporting.run_folder import read_run
@@ -25,7 +26,7 @@ def write_report(run_dir: Path, *, progress: Progress | None = None, sources: So
     Parameters
     ----------
     run_dir : a folder with run.json and results.parquet.
-    progress : called with (what comes next, figures done, figures in all).
+    progress : where to tell how many figures are done; nowhere by default.
     sources : where pictures come from; the bench's store by default.
 
     Figures whose data have not changed are left as they are. Files that an earlier report of the
@@ -41,15 +42,14 @@ def write_report(run_dir: Path, *, progress: Progress | None = None, sources: So
     written = [path for table in tables for path in _write_table(run_dir, table)]
     groups = wanted_groups(run)
     plans = planned_figures(run, sources or sources_of(run), GROUPS if groups is None else groups)
-    drawn, digests = draw_changed(run, plans, manifest["figures"], progress)
+    with (progress or Progress()).stage("figures", len(plans)) as advance:
+        drawn, digests = draw_changed(run, plans, manifest["figures"], advance)
     written += [figure.plan.path(e) for figure in drawn if figure.there for e in EXTENSIONS]
     _remove_leftovers(run_dir, set(manifest["files"]) - set(written))
     write_atomically(run_dir / "index.html", render_page(run, tables, drawn))
     fresh = {"figures": digests, "files": sorted(written)}
     if fresh != manifest:
         write_atomically(run_dir / MANIFEST, json.dumps(fresh, indent=1) + "\n")
-    if progress:
-        progress("done", len(plans), len(plans))
     return run_dir / "index.html"
 
 

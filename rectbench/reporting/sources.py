@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
@@ -11,8 +12,8 @@ from typing import Any, Literal
 from rectbench.bench import recall
 from rectbench.bench.planning import CellTask, PairTask
 from rectbench.cameras.arrays import FloatArray
-from rectbench.errors import InvalidInput, RectbenchError
-from rectbench.metrics import distortion
+from rectbench.errors import InvalidInput, InvalidResult, RectbenchError
+from rectbench.metrics import Jacobians, distortion, distortion_of
 from rectbench.rendering.images import StereoPair
 from rectbench.rendering.truth import Truth
 from rectbench.reporting.run_folder import Result, Run
@@ -21,6 +22,8 @@ from rectbench.warps import Rectification
 
 Side = Literal["left", "right"]
 Identity = tuple[Any, ...]
+_FINGERPRINT = "distortion_native"
+_SAME_FIT = 1e-3
 
 
 @dataclass(frozen=True)
@@ -79,7 +82,9 @@ class _Recalled:
     def rectification(self, result: Result) -> Rectification:
         key = recall.identity_of(result.row)
         if key not in self._fitted:
-            self._fitted[key] = recall.recalled_rectification(self._task(result))
+            rectification = recall.recalled_rectification(self._task(result))
+            _require_same(rectification, result)
+            self._fitted[key] = rectification
         return self._fitted[key]
 
     def version(self, result: Result) -> str:
@@ -87,3 +92,16 @@ class _Recalled:
             return recall.recalled_version(self._task(result))
         except RectbenchError as error:  # a plugin or a rig that is not on this machine
             return str(error)
+
+
+def _require_same(rectification: Rectification, result: Result) -> None:
+    """Raise InvalidResult where the new fit is not the one the run measured: a picture must not lie."""
+    measured = result.metrics.get(_FINGERPRINT)
+    if measured is None:
+        return
+    found = float(distortion_of(Jacobians.at(rectification)))
+    if not math.isclose(found, measured, rel_tol=_SAME_FIT):
+        raise InvalidResult(
+            f"fitted again it has the distortion {found:.4g}, the run measured {measured:.4g}; "
+            "code or libraries have changed since"
+        )

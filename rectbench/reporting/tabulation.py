@@ -172,7 +172,7 @@ def _metric_row(shown_as: Column, present: Sequence[Result | None]) -> tuple[Ent
 def _note_row(name: str, present: Sequence[Result | None]) -> tuple[Entry, ...]:
     """What methods say of their own answers: focal lengths, energies, warnings."""
     values = [None if r is None else r.notes.get(name) for r in present]
-    return Entry(f"says: {name.replace('_', ' ')}", f"note:{name}"), *map(_note_entry, values)
+    return Entry(f"note: {name.replace('_', ' ')}", f"note:{name}"), *map(_note_entry, values)
 
 
 def _note_entry(value: Any) -> Entry:

@@ -6,7 +6,7 @@ from rectbench.warps.pinhole_view import HomographyRectifier, PinholeView
 from rectbench.warps.rectification import Rectification
 from rectbench.warps.rectifier import Images, Matches, Options, Problem, Rectifier, option, pose_problem
 from rectbench.warps.sampling import evaluation_pixels, outline_pixels
-from rectbench.warps.targets import Cubic, Epipolar, Perspective, Radial
+from rectbench.warps.targets import Cubic, Epipolar, Perspective, Profile, Radial, Target
 from rectbench.warps.warp import Warp
 
 __all__ = [
@@ -19,9 +19,11 @@ __all__ = [
     "Perspective",
     "PinholeView",
     "Problem",
+    "Profile",
     "Radial",
     "Rectification",
     "Rectifier",
+    "Target",
     "ViewAngles",
     "Warp",
     "centre_rays",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
@@ -56,10 +57,15 @@ class Problem:
     """[N, 2] source pixels whose distortion counts."""
     pixels_right: FloatArray
     """[N, 2]"""
-    matches: Matches
-    """Corresponding pixels, with their noise."""
+    known_matches: Matches | None = None
+    """Corresponding pixels, with their noise, where somebody found some."""
     images: Images | None = None
     seed: int = 0
+
+    @cached_property
+    def matches(self) -> Matches:
+        """The known matches; without any, exact ones made from the believed pose."""
+        return self.known_matches if self.known_matches is not None else matches_from_pose(self.rig)
 
     def angle_warps(self) -> tuple[Warp, Warp]:
         """Both cameras' maps from pixels to (γ, β) in radians: what a row-keeping method starts from."""
@@ -80,7 +86,7 @@ def pose_problem(
         rig=rig,
         pixels_left=evaluation_pixels(rig.left) if pixels is None else pixels,
         pixels_right=evaluation_pixels(rig.right) if pixels is None else pixels,
-        matches=matches if matches is not None else matches_from_pose(rig),
+        known_matches=matches,
         images=images,
         seed=seed,
     )

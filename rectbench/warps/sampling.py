@@ -35,25 +35,24 @@ def _cell_centres(camera: Camera, count: float) -> FloatArray:
     return np.stack(np.meshgrid(u, v), axis=-1).reshape(-1, 2)
 
 
+RIM_POINTS = 257
+"""Points a side of the rim: between two of them an angle's extreme moves by hundredths of a pixel."""
+
+
 def outline_pixels(camera: Camera) -> tuple[FloatArray, float]:
     """Pixels [N, 2] whose images bound the view's image under any continuous map, and their spacing.
 
-    The rim of the image where the lens sees all of it; else a grid over the whole image too, since
-    the image circle's edge then bounds the view. The spacing in pixels tells how far the bound may
-    be off; it is 0 for the rim alone.
+    The rim of the image, half a pixel out, where the lens sees all of it; else a grid over the whole
+    image too, since the image circle's edge then bounds the view. The spacing in pixels tells how far
+    the bound may be off; it is 0 for the rim alone.
     """
-    w, h = camera.width, camera.height
-    u, v = np.arange(2 * w + 1) / 2 - 0.5, np.arange(2 * h + 1) / 2 - 0.5
-    rim = np.concatenate(
-        [
-            np.stack(np.broadcast_arrays(*side), -1)
-            for side in ((u, -0.5), (u, h - 0.5), (-0.5, v), (w - 0.5, v))
-        ]
-    )
+    right, bottom = camera.width - 0.5, camera.height - 0.5
+    u, v = np.linspace(-0.5, right, RIM_POINTS), np.linspace(-0.5, bottom, RIM_POINTS)
+    sides = ((u, -0.5), (u, bottom), (-0.5, v), (right, v))
+    rim = np.concatenate([np.stack(np.broadcast_arrays(*side), axis=-1) for side in sides])
     seen = camera.unproject(rim)[1]
     if seen.all():
         return rim, 0.0
-    spacing = max(1.0, max(w, h) / 256)
-    grid = np.stack(np.meshgrid(np.arange(-0.5, w, spacing), np.arange(-0.5, h, spacing)), -1).reshape(-1, 2)
+    grid = np.stack(np.meshgrid(u, v), axis=-1).reshape(-1, 2)
     inside = grid[camera.unproject(grid)[1]]
-    return np.concatenate([rim[seen], inside]), spacing
+    return inside, max(camera.size) / (RIM_POINTS - 1)

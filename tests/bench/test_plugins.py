@@ -44,7 +44,9 @@ def test_an_edited_file_is_loaded_anew(tmp_path: Path) -> None:
 
 
 def test_an_unknown_name_gets_the_nearest() -> None:
-    with pytest.raises(rb.UnknownName, match="unknown method 'local-homografy'; did you mean local-homography"):
+    with pytest.raises(
+        rb.UnknownName, match="unknown method 'local-homografy'; did you mean local-homography"
+    ):
         registry("methods").get("local-homografy")
 
 
@@ -95,7 +97,7 @@ def test_a_report_with_a_wrong_field_names_it(tmp_path: Path) -> None:
 
 
 def test_a_file_that_is_not_there_is_named(tmp_path: Path) -> None:
-    with pytest.raises(rb.InvalidInput, match="there is no file .*absent.py"):
+    with pytest.raises(rb.InvalidInput, match=r"there is no file .*absent\.py"):
         registry("methods").get(str(tmp_path / "absent.py"))
 
 

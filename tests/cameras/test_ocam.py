@@ -128,6 +128,16 @@ def test_the_domain_ends_where_the_angle_stops_rising_with_the_radius():
     assert not camera.project(outside)[1]
 
 
+def test_two_radii_that_newton_steps_call_in_turn_do_not_hold_up_the_search():
+    poly = (254.56781383768674, 0.0, -0.0029164910565134734, -3.921286791800707e-06, 1.4176320756669279e-08)
+    camera = Camera("ocam", (1600, 1200), {"cx": 874.3, "cy": 389.3, "poly": poly})
+    bearing = np.array([0.18582545, 0.9820952, -0.03095045])
+    bearing /= np.linalg.norm(bearing)
+    pixel, seen = camera.project(bearing)
+    assert seen
+    assert angle_between(camera.unproject(pixel)[0], bearing) < 1e-9
+
+
 @pytest.mark.parametrize(
     ("params", "message"),
     [

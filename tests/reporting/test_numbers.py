@@ -44,6 +44,11 @@ def test_missing_and_infinite_values_have_signs_of_their_own() -> None:
     assert shown(math.inf, Column("x", "x")) == "∞"
 
 
+def test_counts_are_whole() -> None:
+    assert shown(10000.0, column("row_error_matches")) == "10000"
+    assert shown(2.5e7, column("row_error_matches")) == "2.50×10⁷"
+
+
 def test_seconds_are_shown_in_milliseconds() -> None:
     assert shown(0.0123, column("fit_s")) == "12.3"
 

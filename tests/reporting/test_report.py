@@ -2,13 +2,15 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from rectbench.bench.progress import Advance, Progress
 from rectbench.errors import InvalidInput, Unavailable
 from rectbench.reporting import Sources, write_report
 from tests.reporting.runs import METHODS, failed_row, fake_sources, quick_rows, save_run
@@ -153,10 +155,16 @@ def test_files_hold_no_time_and_are_the_same_in_two_runs(write_run: WriteRun) ->
 
 def test_what_has_not_changed_is_not_drawn_again(reported: Path) -> None:
     before = {p: p.stat().st_mtime_ns for p in (reported / "figures").iterdir()}
-    told: list[str] = []
-    write_report(reported, sources=fake_sources(160), progress=lambda title, done, total: told.append(title))
+    steps: list[int] = []
+
+    class Counted(Progress):
+        @contextmanager
+        def stage(self, title: str, total: int) -> Iterator[Advance]:
+            yield lambda: steps.append(total)
+
+    write_report(reported, sources=fake_sources(160), progress=Counted())
     assert {p: p.stat().st_mtime_ns for p in (reported / "figures").iterdir()} == before
-    assert told == ["done"]
+    assert steps == [9] * 9
 
 
 def test_changed_numbers_are_drawn_again_and_leftovers_removed(write_run: WriteRun, sources: Sources) -> None:

@@ -14,9 +14,9 @@ from rectbench.cameras.sphere import distance, edge, from_sphere_plane, to_spher
 class DoubleSphere(Lens):
     """The unit sphere, moved forward by ξ, onto a second one: (x, y) / (α d₂ + (1-α) (ξ d₁ + z)).
 
-    The edge is where the second sphere ends. That is exact, and a little beyond the paper's
-    inequality (43) for most lenses; for ξ < 0 with α near ½ or 1 the paper lets some rays through
-    that have already folded.
+    The edge is where the second sphere ends, exactly. The paper's inequality (43) differs: for most
+    lenses it stops early (by 1.2° for ξ = -0.2, α = 0.6); for ξ < 0 with α near 0 or 1 it lets rays
+    through that have already folded.
     """
 
     name = "double-sphere"

@@ -33,4 +33,4 @@ class KannalaBrandt(RadialLens):
 
     def angle(self, c: Any, radius: Any, xp: Any) -> Any:
         start = radius * (c.max_theta / c.max_radius)
-        return inverse(self.radius, c, radius, 0.0, c.max_theta, start, xp)
+        return inverse(self.radius, c, radius, c.max_theta, c.max_radius, start, xp)

@@ -54,9 +54,7 @@ class OCam(RadialLens):
 
     def radius(self, c: Any, theta: Any, xp: Any) -> Any:
         if c.depth:
-            theta = xp.minimum(theta, c.max_theta)
-            start = xp.minimum(theta * c.depth[0], c.max_radius)
-            return inverse(self.angle, c, theta, 0.0, c.max_radius, start, xp)
+            return inverse(self.angle, c, theta, c.max_radius, c.max_theta, theta * c.depth[0], xp)
         near = xp.minimum(theta * c.fading, 1.0)
         return theta * horner(c.slopes, theta) + c.hole * near * (2.0 - near)
 
@@ -64,7 +62,7 @@ class OCam(RadialLens):
         if c.depth:
             return xp.atan2(radius, horner(c.depth, radius))
         start = radius * (c.max_theta / c.max_radius)
-        return inverse(self.radius, c, radius, 0.0, c.max_theta, start, xp)
+        return inverse(self.radius, c, radius, c.max_theta, c.max_radius, start, xp)
 
     def to_pixel(self, c: Any, mx: Any, my: Any) -> tuple[Any, Any]:
         return mx + c.e * my + c.cx, c.d * mx + c.c * my + c.cy

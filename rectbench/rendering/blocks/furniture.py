@@ -32,17 +32,28 @@ def chair(wood: Finish, seat: Finish) -> Model:
     """A dining chair with a slatted back; seat at 45 cm."""
     x, front, back = 0.19, -0.19, 0.19
     legs = [rod((s * x, front, 0.0), (s * 0.9 * x, front, SEAT_M - 0.03), 0.017) for s in (-1, 1)]
-    posts = [tubes([(s * x, back + 0.04, 0.0), (s * x, back, SEAT_M), (s * x, back + 0.1, 0.95)], 0.017) for s in (-1, 1)]
+    posts = [
+        tubes([(s * x, back + 0.04, 0.0), (s * x, back, SEAT_M), (s * x, back + 0.1, 0.95)], 0.017)
+        for s in (-1, 1)
+    ]
     rungs = [rod((s * x, front, 0.2), (s * x, back, 0.2), 0.009, 6) for s in (-1, 1)]
     slats = [plank(2 * x, 0.014, 0.05).at(0, back + 0.02 + 0.2 * (z - SEAT_M), z) for z in (0.58, 0.70)]
-    slats += [plank(2 * x + 0.05, 0.02, 0.09).at(0, back + 0.1, 0.85), plank(2 * x, 0.02, 0.05).at(0, front, 0.37)]
+    slats += [
+        plank(2 * x + 0.05, 0.02, 0.09).at(0, back + 0.1, 0.85),
+        plank(2 * x, 0.02, 0.05).at(0, front, 0.37),
+    ]
     slats += [plank(0.02, 2 * x, 0.05).at(s * x, 0, 0.37) for s in (-1, 1)]
-    return join([*legs, *posts, *rungs, *slats]).of(wood) + ball(0.44, 0.43, 0.06, 0.35).at(z=SEAT_M - 0.04).of(seat)
+    return join([*legs, *posts, *rungs, *slats]).of(wood) + ball(0.44, 0.43, 0.06, 0.35).at(
+        z=SEAT_M - 0.04
+    ).of(seat)
 
 
 def stool(wood: Finish) -> Model:
     """A round stool on three splayed legs."""
-    legs = [rod((0.2 * np.cos(a), 0.2 * np.sin(a), 0.0), (0.1 * np.cos(a), 0.1 * np.sin(a), 0.44), 0.018) for a in (0.5, 2.6, 4.7)]
+    legs = [
+        rod((0.2 * np.cos(a), 0.2 * np.sin(a), 0.0), (0.1 * np.cos(a), 0.1 * np.sin(a), 0.44), 0.018)
+        for a in (0.5, 2.6, 4.7)
+    ]
     return join([cylinder(0.17, 0.035).at(z=0.43), *legs]).of(wood)
 
 
@@ -90,7 +101,13 @@ def _pile(rng: np.random.Generator, spines: Prints) -> Model:
 
 
 def bookcase(
-    rng: np.random.Generator, wood: Finish, spines: Prints, parcels: Prints, *, width: float = 1.0, shelves: int = 6
+    rng: np.random.Generator,
+    wood: Finish,
+    spines: Prints,
+    parcels: Prints,
+    *,
+    width: float = 1.0,
+    shelves: int = 6,
 ) -> Model:
     """A full bookcase, its back at y = 0, books in front of it."""
     height, depth, gap = 0.08 + 0.35 * shelves, 0.3, 0.35
@@ -101,7 +118,9 @@ def bookcase(
     for k in range(shelves):
         level = 0.105 + gap * k
         used = width - 0.06 - (0.3 if rng.random() < 0.3 else 0.0)
-        filled.append(books(rng, spines, length=used, height=gap - 0.04).at((used - width) / 2 + 0.03, -0.24, level))
+        filled.append(
+            books(rng, spines, length=used, height=gap - 0.04).at((used - width) / 2 + 0.03, -0.24, level)
+        )
         if used < width - 0.1:
             size = (rng.uniform(0.16, 0.24), 0.18, rng.uniform(0.12, 0.26))
             filled.append(parcel(parcels, size, int(rng.integers(16))).at(width / 2 - 0.17, -0.15, level))
@@ -129,19 +148,42 @@ def sofa(fabric: Finish, cushions: Finish, wood: Finish, *, width: float = 1.9) 
         x = (k - 1) * each
         frame.append(ball(each - 0.01, 0.62, 0.17, 0.35).at(x, -0.08, 0.32))
         frame.append(ball(each - 0.02, 0.17, 0.42, 0.4).tipped((1, 0, 0), -12).at(x, 0.2, 0.43))
-    loose = [ball(0.42, 0.16, 0.40, 0.5).tipped((1, 0, 0), -25).at(x, 0.02, 0.48, turn_deg=t) for x, t in ((-0.6, 20), (0.62, -25))]
-    feet = [turned([(0.015, 0.0), (0.03, 0.14), (0.0, 0.14)], 10).at(s * (width / 2 - 0.1), t * 0.34) for s in (-1, 1) for t in (-1, 1)]
+    loose = [
+        ball(0.42, 0.16, 0.40, 0.5).tipped((1, 0, 0), -25).at(x, 0.02, 0.48, turn_deg=t)
+        for x, t in ((-0.6, 20), (0.62, -25))
+    ]
+    feet = [
+        turned([(0.015, 0.0), (0.03, 0.14), (0.0, 0.14)], 10).at(s * (width / 2 - 0.1), t * 0.34)
+        for s in (-1, 1)
+        for t in (-1, 1)
+    ]
     return join(frame).of(fabric) + join(loose).of(cushions) + join(feet).of(wood)
 
 
-def cabinet(wood: Finish, knob: Finish, *, width: float = 0.9, height: float = 0.8, depth: float = 0.42, drawers: int = 3) -> Model:
+def cabinet(
+    wood: Finish,
+    knob: Finish,
+    *,
+    width: float = 0.9,
+    height: float = 0.8,
+    depth: float = 0.42,
+    drawers: int = 3,
+) -> Model:
     """A chest of drawers, its back at y = 0."""
     body = plank(width, depth, height - 0.08).at(0, -depth / 2, 0.08)
     top = plank(width + 0.04, depth + 0.03, 0.025).at(0, -depth / 2, height)
     each = (height - 0.12) / drawers
-    fronts = [plank(width - 0.05, 0.02, each - 0.02).at(0, -depth - 0.01, 0.1 + each * k) for k in range(drawers)]
-    feet = [plank(0.05, 0.05, 0.08).at(s * (width / 2 - 0.05), y) for s in (-1, 1) for y in (-0.05, 0.05 - depth)]
-    knobs = [ball(0.032, 0.032, 0.032).at(s * width / 4, -depth - 0.035, 0.1 + each * (k + 0.45)) for k in range(drawers) for s in (-1, 1)]
+    fronts = [
+        plank(width - 0.05, 0.02, each - 0.02).at(0, -depth - 0.01, 0.1 + each * k) for k in range(drawers)
+    ]
+    feet = [
+        plank(0.05, 0.05, 0.08).at(s * (width / 2 - 0.05), y) for s in (-1, 1) for y in (-0.05, 0.05 - depth)
+    ]
+    knobs = [
+        ball(0.032, 0.032, 0.032).at(s * width / 4, -depth - 0.035, 0.1 + each * (k + 0.45))
+        for k in range(drawers)
+        for s in (-1, 1)
+    ]
     return join([body, top, *fronts, *feet]).of(wood) + join(knobs).of(knob)
 
 
@@ -156,14 +198,20 @@ def desk_lamp(metal: Finish, cloth: Finish) -> Model:
     """A jointed work lamp, 45 cm high."""
     arms = tubes([(0, 0, 0.02), (-0.09, 0, 0.24), (0.12, 0, 0.44)], 0.008, 6)
     foot = cylinder(0.085, 0.02)
-    hood = turned([(0.025, 0.0), (0.03, -0.05), (0.085, -0.13), (0.08, -0.13), (0.02, -0.05)], 16).at(0.14, 0, 0.47)
+    hood = turned([(0.025, 0.0), (0.03, -0.05), (0.085, -0.13), (0.08, -0.13), (0.02, -0.05)], 16).at(
+        0.14, 0, 0.47
+    )
     return (arms + foot).of(metal) + hood.of(cloth)
 
 
 def pendant(shade: Finish, flex: Finish, *, drop: float) -> Model:
     """A lampshade that hangs `drop` metres below z = 0 on its flex."""
-    hood = turned([(0.05, 0.0), (0.07, -0.02), (0.24, -0.2), (0.235, -0.2), (0.06, -0.03), (0.05, 0.0)], 24).at(z=-drop)
-    return hood.of(shade) + (rod((0, 0, 0), (0, 0, -drop), 0.005, 6) + cylinder(0.05, 0.02).at(z=-0.02)).of(flex)
+    hood = turned(
+        [(0.05, 0.0), (0.07, -0.02), (0.24, -0.2), (0.235, -0.2), (0.06, -0.03), (0.05, 0.0)], 24
+    ).at(z=-drop)
+    return hood.of(shade) + (rod((0, 0, 0), (0, 0, -drop), 0.005, 6) + cylinder(0.05, 0.02).at(z=-0.02)).of(
+        flex
+    )
 
 
 def picture(prints: Prints, frame: Finish, index: int, *, width: float = 0.6, height: float = 0.8) -> Model:
@@ -186,7 +234,11 @@ def door(leaf: Finish, frame: Finish, metal: Finish, plate: Prints, index: int) 
         [(-a, 0, height), (a + 0.1, 0, height), (a + 0.1, 0, height + 0.1)],
     )
     slab = plank(width, 0.03, height).at(0, -0.015)
-    fields = [plank(0.28, 0.014, tall).at(x, -0.035, z) for x in (-0.2, 0.2) for z, tall in ((0.35, 0.6), (1.1, 0.8))]
+    fields = [
+        plank(0.28, 0.014, tall).at(x, -0.035, z)
+        for x in (-0.2, 0.2)
+        for z, tall in ((0.35, 0.6), (1.1, 0.8))
+    ]
     handle = tubes([(a - 0.08, -0.03, 1.02), (a - 0.08, -0.08, 1.02), (a - 0.2, -0.08, 1.02)], 0.011, 8)
     kick = boxes([(-a + 0.03, -0.034, 0.03)], [(a - 0.03, -0.03, 0.24)])
     sign = plate.on(panel(0.2, 0.26).at(a + 0.17, -0.008, 1.45), index)
@@ -197,7 +249,7 @@ def radiator(enamel: Finish, *, width: float = 1.2, height: float = 0.6) -> Mode
     """A ribbed radiator on a wall, 15 cm above the floor."""
     x = np.arange(-width / 2, width / 2 + 1e-6, 0.06)
     low = np.stack([x - 0.024, np.full_like(x, -0.15), np.full_like(x, 0.15)], axis=1)
-    ribs = boxes(low, low + [0.048, 0.11, height])
+    ribs = boxes(low, low + np.array([0.048, 0.11, height]))
     pipes = tubes([[(-width / 2, -0.1, z), (width / 2, -0.1, z)] for z in (0.19, 0.1 + height)], 0.022, 8)
     feed = rod((width / 2 + 0.05, -0.1, 0.0), (width / 2 + 0.05, -0.1, 0.2), 0.012)
     return (ribs + pipes + feed).of(enamel)
@@ -211,15 +263,24 @@ def blind(slat: Finish, cord: Finish, *, width: float, height: float, tilt_deg: 
     return join([*slats, box(width, 0.05, 0.03).at(z=-0.03)]).of(slat) + join(cords).of(cord)
 
 
-def notice_board(cork: Finish, frame: Finish, prints: Prints, rng: np.random.Generator, *, width: float = 1.8) -> Model:
+def notice_board(
+    cork: Finish, frame: Finish, prints: Prints, rng: np.random.Generator, *, width: float = 1.8
+) -> Model:
     """A cork board full of pinned sheets, 1.1 m high."""
     height = 1.1
     board = box(width, 0.02, height).at(0, -0.01).of(cork)
-    rim = boxes([(-width / 2, -0.03, -0.03), (-width / 2, -0.03, height)], [(width / 2, 0, 0), (width / 2, 0, height + 0.03)])
+    rim = boxes(
+        [(-width / 2, -0.03, -0.03), (-width / 2, -0.03, height)],
+        [(width / 2, 0, 0), (width / 2, 0, height + 0.03)],
+    )
     sheets = []
     for k, x in enumerate(np.arange(-width / 2 + 0.16, width / 2 - 0.1, 0.27)):
         for z in (0.08, 0.58):
-            sheet = panel(0.21, 0.29).tipped((0, 1, 0), rng.normal(0, 5)).at(x - 0.1, -0.022 - 0.002 * k, z + rng.uniform(0, 0.1))
+            sheet = (
+                panel(0.21, 0.29)
+                .tipped((0, 1, 0), rng.normal(0, 5))
+                .at(x - 0.1, -0.022 - 0.002 * k, z + rng.uniform(0, 0.1))
+            )
             sheets.append(prints.on(sheet, int(rng.integers(24))))
     return board + rim.of(frame) + together(sheets)
 
@@ -239,9 +300,13 @@ def lockers(enamel: Finish, metal: Finish, *, count: int = 4) -> Model:
 
 def extinguisher(red: Finish, black: Finish) -> Model:
     """A fire extinguisher on a wall bracket, 60 cm high, its foot at z = 0."""
-    body = turned([(0.0, 0.0), (0.075, 0.01), (0.075, 0.42), (0.03, 0.49), (0.02, 0.52), (0.0, 0.52)], 16).at(0, -0.1)
+    body = turned([(0.0, 0.0), (0.075, 0.01), (0.075, 0.42), (0.03, 0.49), (0.02, 0.52), (0.0, 0.52)], 16).at(
+        0, -0.1
+    )
     hose = tubes([(0.02, -0.1, 0.52), (0.12, -0.12, 0.48), (0.12, -0.12, 0.2), (0.09, -0.12, 0.08)], 0.012, 6)
-    return body.of(red) + (hose + box(0.03, 0.12, 0.03).at(0, -0.12, 0.52) + box(0.12, 0.03, 0.1).at(0, -0.015, 0.2)).of(black)
+    return body.of(red) + (
+        hose + box(0.03, 0.12, 0.03).at(0, -0.12, 0.52) + box(0.12, 0.03, 0.1).at(0, -0.015, 0.2)
+    ).of(black)
 
 
 def monitor(black: Finish, prints: Prints, index: int) -> Model:
@@ -249,13 +314,24 @@ def monitor(black: Finish, prints: Prints, index: int) -> Model:
     stand = boxes([(-0.02, 0.02, 0), (-0.11, -0.08, 0)], [(0.02, 0.05, 0.2), (0.11, 0.1, 0.012)])
     case = boxes([(-0.29, 0.0, 0.12)], [(0.29, 0.02, 0.47)])
     keys = boxes([(-0.22, -0.38, 0)], [(0.22, -0.24, 0.018)])
-    face = cards([[(-0.275, -0.003, 0.135), (0.275, -0.003, 0.135), (0.275, -0.003, 0.455), (-0.275, -0.003, 0.455)]])
+    face = cards(
+        [[(-0.275, -0.003, 0.135), (0.275, -0.003, 0.135), (0.275, -0.003, 0.455), (-0.275, -0.003, 0.455)]]
+    )
     return (stand + case + keys).of(black) + prints.on(face, index)
 
 
 def vase(clay: Finish, *, height: float = 0.3) -> Model:
     """A thrown vase."""
-    profile = [(0.0, 0.0), (0.25, 0.0), (0.42, 0.35), (0.33, 0.7), (0.16, 0.86), (0.2, 1.0), (0.17, 1.0), (0.13, 0.86)]
+    profile = [
+        (0.0, 0.0),
+        (0.25, 0.0),
+        (0.42, 0.35),
+        (0.33, 0.7),
+        (0.16, 0.86),
+        (0.2, 1.0),
+        (0.17, 1.0),
+        (0.13, 0.86),
+    ]
     return turned([(r * 0.6 * height, z * height) for r, z in profile]).of(clay)
 
 

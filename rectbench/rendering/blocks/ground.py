@@ -54,7 +54,11 @@ def forest_floor(seed: int) -> Finish:
     """Soil under fallen leaves and needles, with moss."""
     rng = np.random.default_rng((seed, 23))
     size = 1024
-    fine, middle, coarse = fractal(rng, size, size, 0.5), fractal(rng, size, size, 1.5), clouds(rng, size, size)
+    fine, middle, coarse = (
+        fractal(rng, size, size, 0.5),
+        fractal(rng, size, size, 1.5),
+        clouds(rng, size, size),
+    )
     soil = planes((0.155, 0.105, 0.060)) * (1.0 + 0.24 * fine + 0.20 * middle)
     moss = planes((0.095, 0.135, 0.038)) * (1.0 + 0.30 * fine + 0.2 * middle)
     texels = blend(soil, moss, 0.9 * smoothstep(-0.5, 0.9, coarse + 0.5 * middle))

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -55,8 +56,8 @@ def pierced_wall(width: float, height: float, openings: Sequence[Opening]) -> Sh
     x = np.unique([-width / 2, width / 2, *(e for o in openings for e in (o.left, o.right))])
     z = np.unique([0.0, height, *(e for o in openings for e in (o.bottom, o.top))])
     faces = []
-    for a, b in zip(x[:-1], x[1:], strict=True):
-        for c, d in zip(z[:-1], z[1:], strict=True):
+    for a, b in pairwise(x):
+        for c, d in pairwise(z):
             if not any(o.left <= a and b <= o.right and o.bottom <= c and d <= o.top for o in openings):
                 faces.append([(a, 0, c), (b, 0, c), (b, 0, d), (a, 0, d)])
     return quads(faces + [side for o in openings for side in _reveal(o)])
@@ -115,7 +116,11 @@ def front_door(o: Opening, finishes: HouseFinishes, picture: int) -> Model:
     glass = cards([[(o.left, y, top), (o.right, y, top), (o.right, y, o.top), (o.left, y, o.top)]])
     steps = boxes(
         [(o.left - 0.35, -0.55, -0.05), (o.left - 0.2, -0.28, -0.05), (o.left - 0.16, -0.06, o.top)],
-        [(o.right + 0.35, 0, o.bottom / 2), (o.right + 0.2, REVEAL_M, o.bottom), (o.right + 0.16, 0.1, o.top + 0.24)],
+        [
+            (o.right + 0.35, 0, o.bottom / 2),
+            (o.right + 0.2, REVEAL_M, o.bottom),
+            (o.right + 0.16, 0.1, o.top + 0.24),
+        ],
     )
     metal_and_wood = (frame + brass).of(finishes.trim)
     return leaf + metal_and_wood + finishes.panes.on(glass, picture) + steps.of(finishes.stone)
@@ -126,10 +131,14 @@ def gabled_roof(width: float, depth: float, eaves: float, rise: float, finishes:
     a, b, over = -width / 2, width / 2, 0.35
     slope = rise / (depth / 2)
     low, ridge = eaves - over * slope, eaves + rise
-    slopes = quads([
-        [(a - 0.15, -over, low + 0.05), (b + 0.15, -over, low + 0.05), (b + 0.15, depth / 2, ridge + 0.05), (a - 0.15, depth / 2, ridge + 0.05)],
-        [(b + 0.15, depth + over, low + 0.05), (a - 0.15, depth + over, low + 0.05), (a - 0.15, depth / 2, ridge + 0.05), (b + 0.15, depth / 2, ridge + 0.05)],
-    ])  # fmt: skip
+    foot, crown, left, right = low + 0.05, ridge + 0.05, a - 0.15, b + 0.15
+    top = [(right, depth / 2, crown), (left, depth / 2, crown)]
+    slopes = quads(
+        [
+            [(left, -over, foot), (right, -over, foot), *top],
+            [(left, depth + over, foot), (right, depth + over, foot), *top],
+        ]
+    )
     gables = quads([
         [(a, depth, eaves), (a, 0, eaves), (a, depth / 2, ridge), (a, depth / 2, ridge)],
         [(b, 0, eaves), (b, depth, eaves), (b, depth / 2, ridge), (b, depth / 2, ridge)],
@@ -138,7 +147,11 @@ def gabled_roof(width: float, depth: float, eaves: float, rise: float, finishes:
     gutter = rod((a - 0.15, -over - 0.06, low), (b + 0.15, -over - 0.06, low), 0.07)
     pipe = rod((b - 0.25, -0.06, 0.0), (b - 0.25, -0.06, low), 0.045)
     crest = rod((a - 0.15, depth / 2, ridge + 0.06), (b + 0.15, depth / 2, ridge + 0.06), 0.11)
-    return (slopes + crest).of(finishes.roof) + gables.of(finishes.wall) + (soffit + gutter + pipe).of(finishes.trim)
+    return (
+        (slopes + crest).of(finishes.roof)
+        + gables.of(finishes.wall)
+        + (soffit + gutter + pipe).of(finishes.trim)
+    )
 
 
 def chimney(finishes: HouseFinishes, pots: int = 2) -> Model:
@@ -202,6 +215,6 @@ def _bands(width: float, doorway: Opening, storeys: int) -> Shape:
     high = [(doorway.left, 0.0, PLINTH_M), (width / 2, 0.0, PLINTH_M)]
     for storey in range(1, storeys + 1):
         z = PLINTH_M + STOREY_M * storey
-        low.append((-width / 2, -0.035 - 0.05 * (storey == storeys), z - 0.07))
+        low.append((-width / 2, -0.085 if storey == storeys else -0.035, z - 0.07))
         high.append((width / 2, 0.0, z + 0.07))
     return boxes(low, high)

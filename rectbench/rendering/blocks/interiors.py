@@ -50,15 +50,16 @@ def floorboards(seed: int, colour: Colour = OAK) -> Finish:
     """Boards of 12 x 120 cm along u, laid in shifted rows."""
     rng = np.random.default_rng((seed, 42))
     boards = courses(24, 3, (36, 300), shift=0.41)
-    size = boards.block.shape
-    tone = _grain(rng, *size) * (1.0 + 0.18 * boards.tone(rng)) + 0.07 * fractal(rng, *size, 0.9)
+    height, width = boards.block.shape
+    tone = _grain(rng, height, width) * (1.0 + 0.18 * boards.tone(rng))
+    tone = tone + 0.07 * fractal(rng, height, width, 0.9)
     face = (planes(colour) + planes((0.022, 0.002, -0.020)) * boards.tone(rng)) * tone
     texels = blend((0.05, 0.03, 0.02), face, smoothstep(0.2, 1.4, boards.edge_px))
     return Finish("floorboards", Material(reflectance(texels)), (3.6, 2.88))
 
 
 def wall_paint(seed: int, colour: Colour) -> Finish:
-    """Limewash put on by brush: clouded, with filled holes, scuffs and the print of hands."""
+    """Limewash put on by sponge: clouded, with filled holes, scuffs and the print of hands."""
     rng = np.random.default_rng((seed, 43))
     size = 1024
     fine, middle = fractal(rng, size, size, 0.6), fractal(rng, size, size, 1.7)
@@ -66,8 +67,9 @@ def wall_paint(seed: int, colour: Colour) -> Finish:
     filled = (1.0 - smoothstep(0.4, 1.0, distance)) * (kind - 0.65)
     scuff = smoothstep(1.9, 2.7, streaks(rng, size, size, 4.0, 1.7))
     grime = smoothstep(0.7, 2.0, fractal(rng, size, size, 1.9))
-    tone = 1.0 + 0.05 * fine + 0.075 * middle + 0.05 * clouds(rng, size, size)
-    tone = tone + 0.35 * filled - 0.30 * scuff - 0.20 * grime
+    sponge = smoothstep(-0.2, 0.5, fractal(rng, size, size, 1.3))
+    tone = 0.90 + 0.05 * fine + 0.075 * middle + 0.05 * clouds(rng, size, size) + 0.14 * sponge
+    tone = tone + 0.40 * filled - 0.35 * scuff - 0.24 * grime
     return Finish("wall-paint", Material(reflectance(planes(colour) * tone)), (3.4, 3.4))
 
 
@@ -79,11 +81,17 @@ def wallpaper(seed: int, ground: Colour = (0.50, 0.46, 0.36), print_: Colour = (
     contour = np.abs((2.2 * fractal(rng, size, size, 4.2)) % 1.0 - 0.5)
     texels = blend(texels, print_, 0.8 * (1.0 - smoothstep(0.03, 0.06, contour)))
     ragged = 0.16 * fractal(rng, size, size, 1.8)
-    for count, radius, colour in ((1500, 10.0, print_), (600, 7.0, (0.24, 0.34, 0.20)), (500, 5.0, (0.48, 0.17, 0.10))):
+    for count, radius, colour in (
+        (1500, 10.0, print_),
+        (600, 7.0, (0.24, 0.34, 0.20)),
+        (500, 5.0, (0.48, 0.17, 0.10)),
+    ):
         distance, kind = spots(rng, size, size, count, radius)
         leaf = planes(colour) * (0.7 + 0.6 * kind)
         texels = blend(texels, leaf, 1.0 - smoothstep(0.7, 0.9, distance + ragged))
-    return Finish("wallpaper", Material(reflectance(texels * (1.0 + 0.05 * clouds(rng, size, size)))), (3.0, 3.0))
+    return Finish(
+        "wallpaper", Material(reflectance(texels * (1.0 + 0.05 * clouds(rng, size, size)))), (3.0, 3.0)
+    )
 
 
 def cloth(seed: int, colour: Colour, second: Colour | None = None) -> Finish:
@@ -104,8 +112,10 @@ def enamel(seed: int, colour: Colour, *, glossy: bool = True, wear: float = 1.0)
     rng = np.random.default_rng((seed, 46))
     size = 320
     scratch = smoothstep(2.0, 2.8, streaks(rng, size, size, 9.0, 1.3))
-    chip = smoothstep(2.0, 2.4, fractal(rng, size, size, 1.6))
-    tone = 1.0 + wear * (0.07 * fractal(rng, size, size, 0.9) + 0.10 * fractal(rng, size, size, 1.9) + 0.4 * scratch)
+    chip = smoothstep(1.7, 2.0, fractal(rng, size, size, 1.6))
+    tone = 1.0 + wear * (
+        0.09 * fractal(rng, size, size, 1.0) + 0.13 * fractal(rng, size, size, 1.9) + 0.6 * scratch
+    )
     texels = blend(planes(colour) * tone, (0.13, 0.10, 0.08), 0.85 * wear * chip)
     return Finish("enamel", Material(reflectance(texels), glossy), (1.1, 1.1))
 
@@ -120,7 +130,9 @@ def rug(seed: int, ground: Colour = (0.33, 0.075, 0.06), figure: Colour = (0.52,
     rings = np.sin(np.hypot(x - width / 2, y - height / 2) / 15.0)
     petals = np.sin((x + wander) / 19.0) * np.sin((y - wander) / 17.0) + 0.6 * rings
     night = planes((0.05, 0.06, 0.11))
-    field = blend(blend(ground, figure, smoothstep(0.25, 0.5, petals)), night, smoothstep(0.55, 0.75, -petals))
+    field = blend(
+        blend(ground, figure, smoothstep(0.25, 0.5, petals)), night, smoothstep(0.55, 0.75, -petals)
+    )
     zigzag = np.sin((x + y + wander) / 9.0) * np.sin((x - y) / 11.0)
     texels = blend(blend(night, figure, smoothstep(-0.1, 0.25, zigzag)), field, smoothstep(62.0, 66.0, edge))
     texels = blend(texels, figure, (np.abs(edge - 64.0) < 5.0) | (np.abs(edge - 8.0) < 4.0))

@@ -37,7 +37,7 @@ def _shaped(rng: np.random.Generator, height: int, width: int, amplitude: Field)
     drawn -= 0.5
     spectrum = drawn.view(np.complex64)[..., 0]
     spectrum *= amplitude
-    field: Field = np.fft.irfft2(spectrum, s=(height, width))
+    field = np.fft.irfft2(spectrum, s=(height, width)).astype(np.float32, copy=False)
     field *= 1.0 / field.std()
     return field
 

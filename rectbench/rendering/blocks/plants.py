@@ -7,8 +7,10 @@ Wood is tubes, leaves are small folded cards. A plant stands at the origin; repe
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rectbench.cameras.arrays import FloatArray
 from rectbench.rendering.blocks.prints import Prints
@@ -17,6 +19,7 @@ from rectbench.rendering.blocks.solids import loft, tubes, turned
 
 GOLDEN_ANGLE = np.radians(137.50776)
 """Between one shoot and the next around a stem, so that none shades another."""
+UP = np.array([0.0, 0.0, 1.0])
 LEAF_FOLD = 0.35
 """How far a leaf's sides rise above its midrib, as a share of its half width."""
 
@@ -32,13 +35,14 @@ class Branches:
         """The branches as tubes."""
         return tubes(self.paths, self.radii, sides)
 
-    def points(self, branch: FloatArray, share: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def points(
+        self, branch: NDArray[np.integer[Any]], share: FloatArray
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Point, unit direction and radius at a `share` 0..1 of the length of each `branch` number."""
         knots = self.paths.shape[1]
         position = np.clip(share, 0.0, 1.0) * (knots - 1)
         first = np.minimum(position.astype(int), knots - 2)
         rest = (position - first)[:, None]
-        branch = branch.astype(int)
         start, end = self.paths[branch, first], self.paths[branch, first + 1]
         radius = self.radii[branch, first] * (1 - rest[:, 0]) + self.radii[branch, first + 1] * rest[:, 0]
         return start + rest * (end - start), _unit(end - start), radius
@@ -57,7 +61,9 @@ def _aside(direction: FloatArray, angle: FloatArray) -> FloatArray:
     return np.cos(angle)[:, None] * first + np.sin(angle)[:, None] * np.cross(direction, first)
 
 
-def trunk(rng: np.random.Generator, height: float, radius: float, sway: float = 0.03, knots: int = 12) -> Branches:
+def trunk(
+    rng: np.random.Generator, height: float, radius: float, sway: float = 0.03, knots: int = 12
+) -> Branches:
     """One stem that wanders by `sway` of its height and flares at the root."""
     t = np.linspace(0.0, 1.0, knots)
     wander = np.cumsum(rng.normal(0.0, sway * height / np.sqrt(knots), (knots, 2)), axis=0) * t[:, None]
@@ -117,7 +123,9 @@ def leaves(
     out = _aside(ahead, rng.uniform(0.0, 2.0 * np.pi, total))
     ahead = _unit(0.6 * ahead + out + rng.normal(0.0, 0.25, (total, 3)) - [0.0, 0.0, droop])
     size = length * rng.uniform(0.65, 1.25, (total, 1))
-    across = _unit(_aside(ahead, rng.uniform(0.0, 2.0 * np.pi, total)) + 0.6 * np.cross(ahead, (0.0, 0.0, 1.0)))
+    across = _unit(
+        _aside(ahead, rng.uniform(0.0, 2.0 * np.pi, total)) + 0.6 * np.cross(ahead, (0.0, 0.0, 1.0))
+    )
     return _folded(rng, prints, base, ahead * size, across * (0.5 * width * size))
 
 
@@ -131,7 +139,9 @@ def _folded(
     first = 4 * np.arange(len(base), dtype=np.int64)[:, None]
     faces = np.concatenate([first + np.array([0, 1, 2]), first + np.array([0, 2, 3])])
     uv = np.tile(np.array([[0.5, 0.0], [1.0, 0.45], [0.5, 1.0], [0.0, 0.45]]), (len(base), 1))
-    return prints.spread(Shape(corners.reshape(-1, 3), faces, uv), rng.integers(0, prints.count, len(base)).repeat(4))
+    return prints.spread(
+        Shape(corners.reshape(-1, 3), faces, uv), rng.integers(0, prints.count, len(base)).repeat(4)
+    )
 
 
 def broadleaf(
@@ -139,17 +149,25 @@ def broadleaf(
 ) -> Model:
     """A tree with a round crown above `clear` of its height (lime, maple, oak).
 
-    A `detail` below 1 makes fewer and larger leaves, for trees far away (1: 35 000 triangles).
+    A `detail` below 1 makes fewer and larger leaves, for trees far away (1: 45 000 triangles).
     """
     rng = np.random.default_rng((seed, 81))
     stem = trunk(rng, 0.85 * height, 0.024 * height)
     limbs = sprout(
-        rng, stem, 11, length=(0.38 * height, 0.16 * height), share=(clear, 1.0), angle_deg=(40, 70), thickness=0.5
+        rng,
+        stem,
+        11,
+        length=(0.38 * height, 0.16 * height),
+        share=(clear, 1.0),
+        angle_deg=(40, 70),
+        thickness=0.5,
     )
     boughs = sprout(rng, limbs, 6, length=(0.19 * height, 0.09 * height), thickness=0.6, knots=5)
     twigs = sprout(rng, boughs, 5, length=(0.09 * height, 0.05 * height), lift=0.1, thickness=0.6, knots=4)
-    crown = _crown(rng, twigs, foliage, 42, 0.11, detail)
-    return _wood([(stem, 12, 0.0), (limbs, 7, 0.0), (boughs, 4, 0.1), (twigs, 3, 0.4)], detail).of(bark) + crown
+    crown = _crown(rng, twigs, foliage, 52, 0.105, detail)
+    return (
+        _wood([(stem, 12, 0.0), (limbs, 7, 0.0), (boughs, 4, 0.1), (twigs, 3, 0.4)], detail).of(bark) + crown
+    )
 
 
 def birch(seed: int, bark: Finish, foliage: Prints, *, height: float = 10.0, detail: float = 1.0) -> Model:
@@ -157,7 +175,13 @@ def birch(seed: int, bark: Finish, foliage: Prints, *, height: float = 10.0, det
     rng = np.random.default_rng((seed, 82))
     stem = trunk(rng, height, 0.013 * height, sway=0.05)
     limbs = sprout(
-        rng, stem, 26, length=(0.22 * height, 0.06 * height), share=(0.3, 1.0), angle_deg=(30, 55), thickness=0.4
+        rng,
+        stem,
+        26,
+        length=(0.22 * height, 0.06 * height),
+        share=(0.3, 1.0),
+        angle_deg=(30, 55),
+        thickness=0.4,
     )
     twigs = sprout(rng, limbs, 8, length=(0.10 * height, 0.05 * height), lift=-0.55, thickness=0.5, knots=5)
     crown = _crown(rng, twigs, foliage, 34, 0.07, detail, width=0.7, droop=0.8)
@@ -172,14 +196,18 @@ def spruce(seed: int, bark: Finish, foliage: Prints, *, height: float = 11.0, de
         rng, stem, 64, length=(0.25 * height, 0.02 * height), share=(0.13, 0.99), angle_deg=(78, 100),
         lift=-0.12, thickness=0.22,
     )  # fmt: skip
-    twigs = sprout(rng, boughs, 12, length=(0.055 * height, 0.025 * height), lift=-0.3, angle_deg=(40, 60), knots=3)
+    twigs = sprout(
+        rng, boughs, 12, length=(0.055 * height, 0.025 * height), lift=-0.3, angle_deg=(40, 60), knots=3
+    )
     crown = _crown(rng, twigs, foliage, 16, 0.10, detail, width=0.2, droop=0.3, share=(0.0, 1.0))
     return _wood([(stem, 12, 0.0), (boughs, 4, 0.1)], detail).of(bark) + crown
 
 
 def _wood(orders: list[tuple[Branches, int, float]], detail: float) -> Shape:
     """Tubes of (branches, sides), those left out whose least detail is not reached."""
-    return join(branches.wood(sides if detail > 0.2 else 4) for branches, sides, least in orders if detail >= least)
+    return join(
+        branches.wood(sides if detail > 0.2 else 4) for branches, sides, least in orders if detail >= least
+    )
 
 
 def _crown(
@@ -226,7 +254,7 @@ def bush(seed: int, bark: Finish, foliage: Prints, *, height: float = 1.2, leaf:
 def hedge(seed: int, bark: Finish, foliage: Prints, *, length: float = 2.0, height: float = 1.3) -> Model:
     """A clipped hedge along x: a shell of leaves over twigs, 60 cm thick."""
     rng = np.random.default_rng((seed, 86))
-    count = round(900 * length * height)
+    count = round(420 * length * height)
     half = np.array([length / 2, 0.3, height / 2])
     place = rng.uniform(-1.0, 1.0, (count, 3))
     depth = rng.uniform(0.78, 1.0, count)
@@ -235,7 +263,7 @@ def hedge(seed: int, bark: Finish, foliage: Prints, *, length: float = 2.0, heig
     root = place * half * 1.02 + [0.0, 0.0, half[2]]
     twigs = np.stack([root - 0.12 * _unit(place), root + 0.05 * _unit(place)], axis=1)
     shoots = Branches(twigs, np.full((count, 2), 0.003))
-    return shoots.wood(3).of(bark) + leaves(rng, shoots, foliage, 5, 0.055, droop=0.0)
+    return shoots.wood(3).of(bark) + leaves(rng, shoots, foliage, 5, 0.085, width=0.7, droop=0.0)
 
 
 def blades(
@@ -251,7 +279,9 @@ def blades(
     """Curved strips from `roots` [N, 3] along unit `ahead` [N, 3], tapered, bending down by `bend`."""
     count = len(roots)
     t = np.linspace(0.0, 1.0, knots)[None, :, None]
-    spine = roots[:, None] + length[:, None, None] * (t * ahead[:, None] - bend * t**2 * np.array([0.0, 0.0, 0.5]))
+    spine = roots[:, None] + length[:, None, None] * (
+        t * ahead[:, None] - bend * t**2 * np.array([0.0, 0.0, 0.5])
+    )
     across = _unit(np.cross(ahead, (0.0, 0.0, 1.0)) + rng.normal(0.0, 0.2, (count, 3)))[:, None]
     half = 0.5 * width[:, None, None] * (np.sin(np.pi * (0.18 + 0.80 * t)) + 0.02)
     edges = np.stack([spine - half * across, spine + half * across], axis=2)
@@ -262,12 +292,14 @@ def blades(
     return prints.spread(shape, rng.integers(0, prints.count, count).repeat(2 * knots))
 
 
-def grass_tuft(seed: int, prints: Prints, *, height: float = 0.18, radius: float = 0.22, count: int = 90) -> Model:
+def grass_tuft(
+    seed: int, prints: Prints, *, height: float = 0.18, radius: float = 0.22, count: int = 90
+) -> Model:
     """A tuft of grass blades."""
     rng = np.random.default_rng((seed, 87))
     angle, away = rng.uniform(0.0, 2 * np.pi, count), radius * np.sqrt(rng.uniform(0.0, 1.0, count))
     roots = np.stack([away * np.cos(angle), away * np.sin(angle), np.full(count, -0.02)], axis=1)
-    ahead = _unit(rng.normal(0.0, 0.35, (count, 3)) + [0.0, 0.0, 1.0])
+    ahead = _unit(rng.normal(0.0, 0.35, (count, 3)) + UP)
     size = height * rng.uniform(0.4, 1.4, count)
     return blades(rng, prints, roots, ahead, size, rng.uniform(0.004, 0.009, count))
 
@@ -284,7 +316,7 @@ def fern(seed: int, prints: Prints, *, reach: float = 0.7) -> Model:
     side = np.tile([1.0, -1.0], 13 * 26)[:, None] * _unit(np.cross(along, (0.0, 0.0, 1.0)))
     size = 0.26 * reach * np.sin(np.pi * (0.15 + 0.83 * position)) + 0.01
     ahead = _unit(side + 0.35 * along + rng.normal(0.0, 0.06, side.shape))
-    return blades(rng, prints, base, ahead, size, 0.22 * size + 0.004, bend=0.25, knots=3)
+    return blades(rng, prints, base, ahead, size, 0.22 * size + 0.004, bend=0.25, knots=2)
 
 
 def potted_plant(
@@ -293,7 +325,13 @@ def potted_plant(
     """A house plant with long arching leaves in a clay pot."""
     rng = np.random.default_rng((seed, 89))
     wide = 0.19 * np.sqrt(height)
-    profile = [(0.0, 0.0), (0.7 * wide, 0.0), (wide, 1.6 * wide), (1.08 * wide, 1.6 * wide), (1.08 * wide, 1.8 * wide)]
+    profile = [
+        (0.0, 0.0),
+        (0.7 * wide, 0.0),
+        (wide, 1.6 * wide),
+        (1.08 * wide, 1.6 * wide),
+        (1.08 * wide, 1.8 * wide),
+    ]
     vessel = turned([*profile, (0.9 * wide, 1.8 * wide), (0.88 * wide, 1.65 * wide)])
     earth = turned([(0.9 * wide, 1.66 * wide), (0.0, 1.7 * wide)])
     angle = GOLDEN_ANGLE * np.arange(count)
@@ -324,6 +362,6 @@ def _end_rings(stem: Branches) -> tuple[FloatArray, FloatArray]:
 def posy(seed: int, prints: Prints, *, height: float = 0.3, count: int = 24) -> Model:
     """Cut stems and leaves for a vase, from z = 0 up."""
     rng = np.random.default_rng((seed, 91))
-    ahead = _unit(rng.normal(0.0, 0.45, (count, 3)) + [0.0, 0.0, 1.2])
+    ahead = _unit(rng.normal(0.0, 0.45, (count, 3)) + 1.2 * UP)
     length = height * rng.uniform(0.6, 1.2, count)
     return blades(rng, prints, np.zeros((count, 3)), ahead, length, 0.14 * length, bend=0.6, knots=6)

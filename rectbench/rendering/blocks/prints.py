@@ -80,7 +80,9 @@ def _colour(rng: np.random.Generator, lightness: float = 1.0) -> Field:
 
 def _landscape(rng: np.random.Generator, height: int, width: int) -> Field:
     """Ridges behind one another under a cloudy sky."""
-    sky = blend((0.20, 0.32, 0.46), (0.72, 0.66, 0.55), smoothstep(0.0, 1.6, fractal(rng, height, width, 2.3)))
+    sky = blend(
+        (0.20, 0.32, 0.46), (0.72, 0.66, 0.55), smoothstep(0.0, 1.6, fractal(rng, height, width, 2.3))
+    )
     y = np.arange(height, dtype=np.float32)[:, None]
     texture = fractal(rng, height, width, 1.2)
     for distance in np.linspace(1.0, 0.0, 4):
@@ -94,12 +96,13 @@ def _abstract(rng: np.random.Generator, height: int, width: int) -> Field:
     """Overlapping discs and bars on a painted ground."""
     y, x = np.mgrid[:height, :width].astype(np.float32)
     picture = planes(_colour(rng, 1.4)) * (1.0 + 0.12 * fractal(rng, height, width, 1.2))
-    for _ in range(12):
-        cx, cy, size = rng.uniform(0, width), rng.uniform(0, height), rng.uniform(6, 40)
+    for reach in np.geomspace(45.0, 4.0, 22):
+        cx, cy, size = rng.uniform(0, width), rng.uniform(0, height), reach * rng.uniform(0.6, 1.3)
         disc = np.hypot(x - cx, y - cy) < size
-        bar = (np.abs(x - cx) < size) & (np.abs(y - cy) < rng.uniform(3, 22))
+        bar = (np.abs(x - cx) < size) & (np.abs(y - cy) < 0.4 * size)
         picture = blend(picture, _colour(rng), 0.9 * (disc if rng.random() < 0.5 else bar))
-    return picture
+    strokes: Field = 1.0 + 0.10 * fractal(rng, height, width, 1.5)
+    return np.asarray(picture * strokes)
 
 
 def _notice(rng: np.random.Generator, height: int, width: int) -> Field:
@@ -109,7 +112,9 @@ def _notice(rng: np.random.Generator, height: int, width: int) -> Field:
     picture[:, 12:34, 10:-10] = blend(_colour(rng), PAPER, _words(rng, 22, inner, 16))
     art = smoothstep(-0.4, 0.4, fractal(rng, split - 40, inner, 2.0))
     picture[:, 40:split, 10:-10] = blend(_colour(rng), _colour(rng), art)
-    picture[:, split + 8 : height - 10, 10:-10] = blend(PAPER, INK, _words(rng, height - split - 18, inner, 8))
+    picture[:, split + 8 : height - 10, 10:-10] = blend(
+        PAPER, INK, _words(rng, height - split - 18, inner, 8)
+    )
     return picture
 
 

@@ -161,10 +161,11 @@ def scattered(
     rng: np.random.Generator, places: ArrayLike, scale: tuple[float, float] = (0.8, 1.2)
 ) -> FloatArray:
     """Placements [K, 4, 4] at places [K, 3] metres, each turned and scaled by chance."""
-    return np.array([
-        placement(*map(float, place), turn_deg=rng.uniform(0.0, 360.0), scale=rng.uniform(*scale))
-        for place in np.asarray(places, dtype=float).reshape(-1, 3)
-    ]).reshape(-1, 4, 4)
+    poses = [
+        placement(float(x), float(y), float(z), rng.uniform(0.0, 360.0), rng.uniform(*scale))
+        for x, y, z in np.asarray(places, dtype=float).reshape(-1, 3)
+    ]
+    return np.array(poses).reshape(-1, 4, 4)
 
 
 def stand(x: float, y: float, z: float = 1.6, *, yaw_deg: float = 0.0, pitch_deg: float = 0.0) -> FloatArray:

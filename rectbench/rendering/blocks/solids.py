@@ -148,9 +148,8 @@ def turned(profile: Sequence[tuple[float, float]], sides: int = 24) -> Shape:
     """A profile of (radius, z) metres turned about the z axis, as on a lathe."""
     radius, z = np.asarray(profile, dtype=float).T
     angle = np.linspace(0.0, 2.0 * np.pi, sides, endpoint=False)
-    sections = np.stack([
-        radius[:, None] * np.cos(angle), radius[:, None] * np.sin(angle), np.broadcast_to(z[:, None], (len(z), sides))
-    ], axis=-1)  # fmt: skip
+    level = np.broadcast_to(z[:, None], (len(z), sides))
+    sections = np.stack([np.outer(radius, np.cos(angle)), np.outer(radius, np.sin(angle)), level], axis=-1)
     return loft(sections)
 
 
@@ -161,7 +160,10 @@ def cylinder(radius: float, height: float, sides: int = 24) -> Shape:
 
 def ball(width: float, depth: float, height: float, roundness: float = 1.0) -> Shape:
     """An ellipsoid standing on z = 0; below 1, `roundness` squares it off into a cushion."""
-    latitude, longitude = np.linspace(-np.pi / 2, np.pi / 2, 13), np.linspace(0, 2 * np.pi, 24, endpoint=False)
+    latitude, longitude = (
+        np.linspace(-np.pi / 2, np.pi / 2, 13),
+        np.linspace(0, 2 * np.pi, 24, endpoint=False),
+    )
 
     def bent(values: FloatArray) -> FloatArray:
         curve: FloatArray = np.sign(values) * np.abs(values) ** roundness
@@ -180,7 +182,7 @@ def prism(outline: Sequence[tuple[float, float]], depth: float) -> Shape:
     """An outline of (x, z) metres, star-shaped about its mean, drawn out along y by `depth`."""
     ring = np.asarray(outline, dtype=float)
     near = np.stack([ring[:, 0], np.full(len(ring), -depth / 2), ring[:, 1]], axis=1)
-    far = near + [0.0, depth, 0.0]
+    far = near + np.array([0.0, depth, 0.0])
     caps = [np.broadcast_to(end.mean(axis=0), end.shape) for end in (near, far)]
     return loft(np.stack([caps[0], near, far, caps[1]]))
 
