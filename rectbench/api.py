@@ -122,6 +122,7 @@ def run(
     The arguments are those of `rectbench.bench.running.run`. Returns the rows of `results.parquet`.
     """
     from rectbench.bench import running
+    from rectbench.bench.progress import progress_for
     from rectbench.reporting import write_report
 
     table = running.run(
@@ -137,7 +138,7 @@ def run(
         fresh=fresh,
         progress=progress,
     )
-    write_report(running.run_folder(report, out))
+    write_report(running.run_folder(report, out), progress=progress_for(progress))
     return table
 
 

@@ -27,6 +27,7 @@ app = typer.Typer(
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
+    rich_markup_mode=None,  # square brackets in help texts are TOML sections
 )
 
 ManyNames = Annotated[list[str] | None, typer.Option(metavar="NAMES")]
@@ -55,7 +56,7 @@ def main() -> None:
 
 def _complain(error: object) -> int:
     if str(error):  # without a verb there is only the help, printed already
-        print(f"rectbench: {error}", file=sys.stderr)
+        print(f"rectbench: {' '.join(str(error).split())}", file=sys.stderr)
     return WRONG_USAGE
 
 
@@ -138,9 +139,10 @@ def run(
 def report(folder: RunFolder) -> None:
     """Write the tables, figures and page of a run again."""
     from rectbench import terminal
+    from rectbench.bench.progress import progress_for
     from rectbench.reporting import write_report
 
-    write_report(folder)
+    write_report(folder, progress=progress_for(None))
     terminal.show_summary(folder)
 
 
@@ -234,10 +236,11 @@ def rectify(
     """Rectify an image pair: rectified images, masks, lookup tables and a preview with scan lines."""
     from rectbench import api
     from rectbench.bench.configuring import read_options
-    from rectbench.bench.rectified_files import read_pair, write_rectified
+    from rectbench.bench.rectified_files import write_rectified
+    from rectbench.rendering.images import StereoPair
     from rectbench.rigs import load_rig
 
-    pair = read_pair(left, right)
+    pair = StereoPair.read(left, right)
     calibrated = load_rig(rig, size=pair.left.shape[1::-1])
     options = read_options([f"method.{text}" for text in option or []]).get("method", {})
     rectification = api.rectify(calibrated, method, images=pair, seed=seed, **options)

@@ -130,10 +130,10 @@ def wood(seed: int, rng: np.random.Generator) -> list[rb.blocks.Model]:
     models = []
     # Nearest to farthest: count, metres from and to, metres apart, detail.
     for count, near, far, apart, detail in (
-        (10, CLEARING_M, 11.0, 2.6, 0.9),
+        (10, CLEARING_M, 11.0, 2.6, 0.7),
         (24, 11.0, 21.0, 2.6, 0.2),
         (80, 21.0, 50.0, 2.8, 0.06),
-        (260, 50.0, 110.0, 3.0, 0.02),
+        (200, 50.0, 110.0, 3.0, 0.02),
     ):
         xy = standing_places(rng, count, near, far, apart)
         places = on_ground(xy[:, 0], xy[:, 1], seed, sink=0.05)
@@ -159,7 +159,7 @@ def undergrowth(seed: int, rng: np.random.Generator) -> list[rb.blocks.Model]:
         return b.copies(model, b.scattered(rng, on_ground(*xy.T, seed, sink=0.02), (low, high)))
 
     return [
-        strewn(b.grass_tuft(seed, grass, height=0.24, count=40), 600, 1.3, 13.0, 0.25, 0.6, 1.5),
+        strewn(b.grass_tuft(seed, grass, height=0.24, count=40), 500, 1.3, 13.0, 0.25, 0.6, 1.5),
         strewn(b.fern(seed, fronds), 36, 1.9, 9.0, 0.8, 0.7, 1.4),
         strewn(b.fern(seed + 1, fronds), 36, 1.9, 16.0, 0.8, 0.7, 1.4),
         strewn(b.bush(seed, bark, green), 26, 4.4, 26.0, 1.5, 0.6, 1.1),

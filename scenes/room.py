@@ -298,7 +298,7 @@ def odds_and_ends(seed: int, rng: np.random.Generator) -> list[rb.blocks.Model]:
 
 
 def garden(seed: int) -> list[rb.blocks.Model]:
-    """What the windows show: grass, hedges, apple trees."""
+    """What the windows show: grass, hedges, apple trees, a brick wall around it."""
     b = rb.blocks
     bark, leaves = b.bark(seed), b.foliage(seed, (0.22, 0.34, 0.09))
     hedge = b.hedge(seed, bark, leaves, height=1.9)
@@ -311,6 +311,10 @@ def garden(seed: int) -> list[rb.blocks.Model]:
     ]
     return [
         b.floor((WEST - 8, EAST + 8), (SOUTH - 1, NORTH + 8), -0.3).of(b.lawn(seed)),
+        b.boxes(
+            [(WEST - 8, NORTH + 7.7, -0.3), (WEST - 8, SOUTH - 1, -0.3)],
+            [(EAST + 8, NORTH + 8, 1.9), (WEST - 7.7, NORTH + 8, 1.9)],
+        ).of(b.brick(seed, rows=64, columns=32)),
         b.copies(hedge, hedges),
         b.copies(b.broadleaf(seed, bark, leaves, height=4.5, detail=0.3), apples),
     ]

@@ -36,7 +36,7 @@ def street(seed: int) -> rb.World:
             PAVEMENT_Z + rng.uniform(1.5, 1.7),
             yaw_deg=rng.normal(0, 2.5),
         ),
-        sun=rb.Sun((rng.uniform(-0.75, -0.35), rng.uniform(-0.75, -0.5), 0.7), turbidity=3.0),
+        sun=rb.Sun((rng.uniform(-0.75, -0.35), rng.uniform(-0.55, -0.38), 0.75), turbidity=3.0),
         exposure=3.7,
         fast_exposure=0.6,
     )

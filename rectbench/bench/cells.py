@@ -18,7 +18,7 @@ from rectbench.bench.outcomes import LASTING, Outcome, outcome_of
 from rectbench.bench.pairs import image_inputs, load_images, load_truth, make_pair, placed_rig, truth_inputs
 from rectbench.bench.planning import CellTask, PairTask
 from rectbench.bench.plugins import registry
-from rectbench.bench.rectifying import checked_options, fit
+from rectbench.bench.rectifying import check_result, checked_options, fit
 from rectbench.bench.store import Store
 from rectbench.metrics import measure
 from rectbench.rendering.truth import Truth
@@ -146,7 +146,8 @@ def _measured(task: CellTask, store: Store) -> Outcome:
     options, problem = checked_options(method, task.options), problem_of(task, store)
     columns: dict[str, float] = {}
     if "timing" in task.metrics:
-        rectification, columns["fit_s"] = timed(lambda: fit(method, problem, options))
+        rectification, columns["fit_s"] = timed(lambda: method.value.fit(problem, options))
+        check_result(method.name, rectification, problem)
     else:
         rectification = fit(method, problem, options)
     columns |= _scores(task, rectification, store)

@@ -17,11 +17,6 @@ SCAN_LINES = 24
 LINE_RGB = (90, 220, 90)
 
 
-def read_pair(left: Path, right: Path) -> StereoPair:
-    """Two image files; raises InvalidInput for one that cannot be read."""
-    return StereoPair.read(left, right)
-
-
 def write_rectified(rect: Rectification, pair: StereoPair, folder: Path) -> list[Path]:
     """Write the files of a rectified pair; returns their paths.
 

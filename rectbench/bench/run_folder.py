@@ -92,6 +92,13 @@ def facts_of(plan: Plan) -> dict[str, Any]:
     }
 
 
+def check_writable(folder: Path) -> None:
+    """Raise InvalidInput where a run's folder could not be written, before hours are spent on it."""
+    existing = next(path for path in (folder.absolute(), *folder.absolute().parents) if path.exists())
+    if not existing.is_dir() or not os.access(existing, os.W_OK | os.X_OK):
+        raise InvalidInput(f"{folder} cannot be written; expected a folder, or a place for one")
+
+
 def write_run(folder: Path, table: pd.DataFrame, facts: Mapping[str, Any]) -> None:
     """Write the three files; run.json last, so that it speaks of the results beside it.
 

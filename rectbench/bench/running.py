@@ -19,7 +19,7 @@ from rectbench.bench.plugins import is_path
 from rectbench.bench.pool import Job, Workers
 from rectbench.bench.progress import Progress, progress_for
 from rectbench.bench.report_spec import Report
-from rectbench.bench.run_folder import facts_of, table_of, write_run
+from rectbench.bench.run_folder import check_writable, facts_of, table_of, write_run
 from rectbench.bench.store import Store
 from rectbench.bench.worker import Limits
 from rectbench.errors import InvalidInput
@@ -29,7 +29,7 @@ RUNS = Path("runs")
 
 
 @dataclass(frozen=True)
-class Interrupted(Exception):  # noqa: N818  (it is no error)
+class Interrupted(Exception):
     """Ctrl-C: what was finished is in the store, and the next run goes on from there."""
 
     finished: int
@@ -73,7 +73,8 @@ def run(
     begin = time.monotonic()
     selection = Selection(methods, scenes, rigs, seeds, options or {})
     plan = make_plan(find_report(report), selection)
-    count = _checked_jobs(jobs)
+    count, folder = _checked_jobs(jobs), run_folder(plan.report, out)
+    check_writable(folder)
     threads = max(1, (os.cpu_count() or 1) // count)
     runner = _Runner(plan, Store.default(), count, threads, progress_for(progress))
     if fresh:
@@ -87,7 +88,7 @@ def run(
         "threads_per_job": threads,
         "dask": dask,
     }
-    write_run(run_folder(plan.report, out), table, facts)
+    write_run(folder, table, facts)
     return table
 
 

@@ -7,6 +7,7 @@ The coefficients are k1 k2 p1 p2 k3 k4 k5 k6 s1 s2 s3 s4, in OpenCV's order and 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from functools import lru_cache
 from types import SimpleNamespace
 from typing import Any
@@ -21,6 +22,7 @@ from rectbench.cameras.inversion import invert_in_disk
 COEFFICIENTS = ("k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6", "s1", "s2", "s3", "s4")
 STEEPEST = 1e5
 """Slope at which a rational distortion ends on its way to a pole, hundreds of focal lengths out."""
+DIRECTIONS = np.linspace(0.0, 2.0 * math.pi, 180)
 RADIAL = ("k1", "k2", "k3", "k4", "k5", "k6")
 
 
@@ -40,18 +42,31 @@ def undistorted(c: Any, a: Any, b: Any, xp: Any) -> tuple[Any, Any, Any]:
     return invert_in_disk(distorted, c, a, b, c.max_radius, c.reach, xp)
 
 
-def edge(p: SimpleNamespace, radius: float = math.inf) -> dict[str, float]:
+def edge(
+    p: SimpleNamespace, radius: float = math.inf, slope_before: Callable[[float], float] = lambda _: 1.0
+) -> dict[str, float]:
     """The greatest radius, up to the given one, on which the distortion is monotone, and its image's.
 
     Monotone: the symmetric part of its Jacobian keeps its eigenvalues above `LEAST_SLOPE` on the
     disk of that radius, so no two of its points land on one. For radial terms alone that is where
-    the distorted radius stops rising; without distortion there is no such radius.
+    the distorted radius stops rising; without distortion there is no such radius. `slope_before` is
+    the slope, at a radius, of a step before this one: the two together keep above `LEAST_SLOPE`.
     """
+
+    def steep(radius: float) -> bool:
+        own = float(_least_eigenvalue(p, radius, DIRECTIONS).min())
+        return own * slope_before(radius) >= 0.99 * LEAST_SLOPE
+
     radius = min(radius, _monotone_radius(*(getattr(p, name) for name in COEFFICIENTS)))
     if math.isinf(radius):
         return {"max_radius": radius, "reach": radius}
-    direction = np.linspace(0.0, 2.0 * math.pi, 180)
-    image = distorted(p, radius * np.cos(direction), radius * np.sin(direction), NUMPY)
+    if not steep(radius):
+        low, high = 0.0, radius
+        while high - low > 1e-9 * high:
+            middle = 0.5 * (low + high)
+            low, high = (middle, high) if steep(middle) else (low, middle)
+        radius = low
+    image = distorted(p, radius * np.cos(DIRECTIONS), radius * np.sin(DIRECTIONS), NUMPY)
     return {"max_radius": radius, "reach": 1.01 * float(np.hypot(*image).max())}
 
 

@@ -16,8 +16,8 @@ from rectbench.rigs.rig import Rig
 
 Image = NDArray[np.uint8]
 
-SAMPLES_AT_ONCE = 1 << 24
-"""Samples in flight: 16 B of radiance each, and no more than that is kept whatever the image's size."""
+SAMPLES_AT_ONCE = 1 << 23
+"""Samples in flight: the radiance of no more than these is kept, whatever the image's size."""
 
 
 def radiance(

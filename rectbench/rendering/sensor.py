@@ -141,7 +141,7 @@ def _sensor_class(variant: str) -> Any:
     base: Any = mi.Sensor
 
     class CameraSensor(base):  # type: ignore[misc]
-        """A camera of any projection model.
+        """A camera of any projection model, for scene files once `register` has run.
 
         ============  ==========  =================================================================
         Parameter     Type        Meaning

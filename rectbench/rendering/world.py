@@ -79,7 +79,7 @@ class World:
     sun: Sun | None = None
     lamps: tuple[Lamp, ...] = ()
     ambient: Colour = (0.0, 0.0, 0.0)
-    """Radiance of a uniform surround, for rooms whose light is otherwise all from lamps."""
+    """Radiance of a uniform surround where there is no sun: what shows, and shines, through windows."""
     exposure: float = 1.0
     """Factor from path-traced radiance to display, 1.0 being white."""
     fast_exposure: float = 1.0

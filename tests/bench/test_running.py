@@ -253,6 +253,14 @@ def test_a_report_is_one_of_a_kind_and_jobs_are_whole_numbers() -> None:
     assert not Path("runs").exists()
 
 
+def test_an_output_that_cannot_be_written_is_said_before_anything_runs(tmp_path: Path, store: Store) -> None:
+    (tmp_path / "file").write_text("in the way")
+    for out in (tmp_path / "file", tmp_path / "file" / "run"):
+        with pytest.raises(rb.InvalidInput, match="cannot be written; expected a folder"):
+            run(small_report(), out)
+    assert not store.root.exists()
+
+
 def test_a_store_that_cannot_be_written_is_said_in_one_line(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -19,8 +19,10 @@ FOCAL = {"fx": 300.0, "fy": 310.0, "cx": 630.0, "cy": 480.0}
 
 
 @settings(max_examples=40)
-@given(any_camera())
-def test_copies_are_equal_and_hash_alike(camera):
+@given(any_camera(), st.sampled_from([None, 80, 95.5]))
+def test_copies_are_equal_and_hash_alike(camera, limit_deg):
+    camera = dataclasses.replace(camera, max_angle_deg=limit_deg)
+    assert camera.max_angle_deg == limit_deg
     for other in (
         pickle.loads(pickle.dumps(camera)),
         copy.deepcopy(camera),

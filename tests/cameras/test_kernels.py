@@ -1,16 +1,29 @@
 """The compiled path gives the digits of the NumPy path."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rectbench import llvm
-from rectbench.cameras import Camera, arrays
-from rectbench.cameras.inversion import invert_monotone
+from rectbench.cameras import Camera, arrays, brown
+from rectbench.cameras.inversion import invert_in_disk, invert_monotone
 from tests.cameras.random_cameras import MODELS, SIZE, cameras, domain_rays
 
 needs_llvm = pytest.mark.skipif(not llvm.available(), reason=f"no LLVM: {llvm.problem()}")
+
+
+NOWHERE = [
+    [np.nan, 0, 1],
+    [0, np.nan, 1],
+    [0, 0, np.nan],
+    [1, 0, np.inf],
+    [-np.inf, 0, 1],
+    [0, 0, 0],
+    [0, 0, -1],
+]
 
 
 def both(function, points):
@@ -30,21 +43,23 @@ def test_kernels_and_numpy_agree_to_1e12(model, data):
     camera = data.draw(cameras(model))
     rays = domain_rays(camera, per_direction=20, directions=10)
     off_edge = np.abs(camera.project_jacobian(rays)).max(axis=(-2, -1)) < 1e5
-    rays = np.concatenate([rays[off_edge], [[np.nan, 0, 1], [0, np.nan, 1], [0, 0, np.nan], [0, 0, -1]]])
+    rays = np.concatenate([rays[off_edge], NOWHERE])
     (pixels, seen), (pixels_kernel, seen_kernel) = both(camera.project, rays)
     size = np.maximum(np.abs(pixels), 1e3)
     assert (seen == seen_kernel).mean() > 0.95  # rounding decides on the very edge
     assert np.nanmax(np.abs(pixels - pixels_kernel) / size) < 1e-12
-    assert np.isnan(pixels_kernel[-4:]).all()
+    assert np.isnan(pixels_kernel[-len(NOWHERE) :]).all()
 
-    inner = np.concatenate([np.random.default_rng(5).uniform(250, 950, (400, 2)), [[np.nan, 3]]])
+    inside = np.random.default_rng(5).uniform(250, 950, (400, 2))
+    inner = np.concatenate([inside, [[np.nan, 3], [3, np.inf], [-np.inf, 3]]])
     (back, known), (back_kernel, known_kernel) = both(camera.unproject, inner)
+    assert not known_kernel[-3:].any()
     slope = np.abs(camera.unproject_jacobian(inner)).max(axis=(-2, -1))
     steep = ~(slope < 0.1)  # where a fold is near, both have only the digits that it leaves
     assert (known == known_kernel)[~steep].all()
     assert np.nanmax(np.abs(back - back_kernel)[~steep], initial=0.0) < 1e-12
 
-    jacobian, jacobian_kernel = both(camera.project_jacobian, rays[:-4])
+    jacobian, jacobian_kernel = both(camera.project_jacobian, rays[: -len(NOWHERE)])
     scale = np.linalg.norm(jacobian, axis=(-2, -1), keepdims=True)
     assert np.nanmax(np.abs(jacobian - jacobian_kernel) / scale) < 1e-9
 
@@ -86,6 +101,26 @@ def test_views_and_other_number_types_are_read_right():
     np.testing.assert_array_equal(
         camera.unproject(wide[::2, 3:5])[0], camera.unproject(wide[::2, 3:5].astype(float).copy())[0]
     )
+
+
+def test_the_search_in_a_disk_takes_a_few_steps_and_ends_on_a_fold_too():
+    calls = []
+
+    def formula(c, a, b, xp):
+        calls.append(None)
+        return brown.distorted(c, a, b, xp)
+
+    camera = Camera("pinhole", SIZE, {"fx": 500, "fy": 500, "k1": -0.3, "p1": 1e-3, "p2": -8e-4})
+    c = SimpleNamespace(**camera.constants)
+    angle = np.linspace(0, 6, 200)
+    for radius, most_calls in ((0.6 * c.max_radius, 9), (c.max_radius, 60)):
+        point = radius * np.cos(angle), radius * np.sin(angle)
+        target = brown.distorted(c, *point, np)
+        calls.clear()
+        *found, reached = invert_in_disk(formula, c, *target, c.max_radius, c.reach, np)
+        assert reached.all()
+        np.testing.assert_allclose(found, point, rtol=0, atol=1e-9)
+        assert len(calls) <= most_calls
 
 
 @settings(max_examples=60)

@@ -44,6 +44,17 @@ def test_project_undoes_unproject_to_1e8_px_wherever_a_pixel_has_a_ray(model, da
     assert np.abs(back - pixels[known]).max() < 1e-8
 
 
+@pytest.mark.parametrize("alpha", [0.0, 0.3, 0.5, 0.8, 1.0])
+def test_a_double_sphere_shifted_by_next_to_one_keeps_its_digits(alpha):
+    focal = {"fx": 300, "fy": 300, "cx": 600, "cy": 400}
+    camera = Camera("double-sphere", (1280, 960), {**focal, "xi": 1 - 1e-9, "alpha": alpha})
+    rays = domain_rays(camera)
+    pixels, seen = camera.project(rays)
+    back, known = camera.unproject(pixels[seen])
+    assert known.all()
+    assert angle_between(back, rays[seen]).max() < 1e-9
+
+
 @given(any_camera(), st.floats(5, 180))
 @settings(max_examples=40)
 def test_the_image_circle_cuts_rays_and_pixels_alike(camera, limit_deg):
@@ -77,3 +88,16 @@ def test_a_pixel_hangs_on_the_direction_alone(camera):
 def test_unprojected_rays_have_unit_length(camera):
     rays, known = camera.unproject(np.random.default_rng(1).uniform(-300, 1500, (300, 2)))
     np.testing.assert_allclose(np.linalg.norm(rays[known], axis=-1), 1.0, rtol=0, atol=4e-15)
+
+
+@pytest.mark.parametrize("k1", [-1, -0.99, -0.9999, -1.0001, -1.01, -0.5])
+def test_two_folds_that_meet_leave_the_digits_too(k1):
+    # With ξ = 2 the sphere ends at the radius 1/sqrt(3), where k1 = -1 folds as well.
+    focal = {"fx": 300, "fy": 300, "cx": 600, "cy": 400}
+    camera = Camera("unified", (1280, 960), {**focal, "xi": 2, "k1": k1})
+    rays = domain_rays(camera)
+    pixels, seen = camera.project(rays)
+    back, known = camera.unproject(pixels[seen])
+    assert known.all()
+    assert angle_between(back, rays[seen]).max() < 1e-9
+    assert edge_angle(camera, np.zeros(1))[0] > np.radians(110)

@@ -17,6 +17,7 @@ from rectbench.rendering.images import radiance
 from rectbench.rendering.mitsuba_scene import fast_scene
 from rectbench.rendering.variant import mitsuba
 from rectbench.rendering.world import Material
+from rectbench.rigs.loading import load_rig
 from rectbench.rigs.rig import Rig
 
 PINHOLE = Camera(
@@ -177,6 +178,13 @@ def test_a_scene_file_uses_the_sensor_with_a_rig_file_beside_it(rig: Rig, tmp_pa
     ray, _ = loaded.sample_ray(mi.Float(0), mi.Float(0), mi.Point2f(0.5), mi.Point2f(0.5))
     np.testing.assert_allclose(np.array(ray.o).ravel(), [1, 2, 3])
     assert np.array(ray.d).ravel()[1] > 0.99
+
+
+def test_a_scene_file_names_a_built_in_rig(tmp_path: Path) -> None:
+    rig = load_rig("t265")
+    (tmp_path / "scene.xml").write_text(scene_xml('<string name="rig" value="t265"/>', *rig.left.size))
+    scene = sensors.register().load_file(str(tmp_path / "scene.xml"))
+    assert scene.sensors()[0].camera == rig.left
 
 
 @pytest.mark.parametrize(

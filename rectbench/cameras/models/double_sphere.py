@@ -34,6 +34,6 @@ class DoubleSphere(Lens):
     def from_plane(self, c: Any, mx: Any, my: Any, xp: Any) -> tuple[Any, Any, Any, Any]:
         q = mx * mx + my * my
         mz, ok = from_sphere_plane(c, q, xp)
-        root, lift = xp.sqrt(mz * mz + (1.0 - c.xi * c.xi) * q), c.xi * mz
-        scale = xp.where(lift < 0.0, (1.0 - c.xi * c.xi) / (root - lift), (root + lift) / (mz * mz + q))
+        scale = (c.xi * mz + xp.sqrt(mz * mz + (1.0 - c.xi * c.xi) * q)) / (mz * mz + q)
+        # With ξ = 1 no ray passes behind the second sphere's centre, where mz < 0 and scale is 0.
         return scale * mx, scale * my, scale * mz - c.xi, ok & (scale > 0.0)

@@ -26,12 +26,16 @@ class Unified(Lens):
     ranges: ClassVar = {**Lens.ranges, "xi": Interval(low=-1.0, low_open=True)}
 
     def derive(self, p: SimpleNamespace) -> dict[str, Any]:
-        given = {name: getattr(p, name, 0.0) for name in COEFFICIENTS}
-        touching, cosine = math.inf, -1.0
-        if p.xi > 1:
-            touching = math.sqrt((1 - LEAST_SLOPE**2) / (p.xi**2 - 1))
-            cosine = (p.xi + LEAST_SLOPE) / (1 + touching**2) - p.xi
-        return {**given, **edge(SimpleNamespace(**given), touching), "least_cosine": cosine}
+        brown = SimpleNamespace(**{name: getattr(p, name, 0.0) for name in COEFFICIENTS})
+        if p.xi <= 1:
+            return {**vars(brown), **edge(brown), "least_cosine": -1.0}
+
+        def slope(radius: float) -> float:
+            return math.sqrt(max(0.0, 1 - (p.xi**2 - 1) * radius**2))
+
+        touching = math.sqrt((1 - LEAST_SLOPE**2) / (p.xi**2 - 1))
+        cosine = (p.xi + LEAST_SLOPE) / (1 + touching**2) - p.xi
+        return {**vars(brown), **edge(brown, touching, slope), "least_cosine": cosine}
 
     def to_plane(self, c: Any, x: Any, y: Any, z: Any, xp: Any) -> tuple[Any, Any, Any]:
         length, beyond = distance(z, x * x + y * y, xp)
