@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, get_args, get_origin
 
+from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
@@ -114,11 +115,14 @@ def show_summary(folder: Path) -> None:
 
     screen, found = console(), read_run(folder)
     for summary in main_tables(found):
-        table = Table(title=summary.title, caption=" ".join([summary.caption, *summary.notes]))
+        caption = " ".join([summary.caption, *summary.notes])
+        table = Table(title=summary.title, caption=caption, box=SIMPLE_HEAD, pad_edge=False)
         shown = [i for i, heading in enumerate(summary.headings) if heading.key not in _PAGE_ONLY]
         for i in shown:
             heading = summary.headings[i]
-            table.add_column(heading.text, justify="right" if heading.numeric else "left")
+            # On a narrow screen the headings are folded, never the numbers.
+            widest = max(len(row[i].text) for row in summary.rows)
+            table.add_column(heading.text, justify="right" if heading.numeric else "left", min_width=widest)
         for row in summary.rows:
             table.add_row(*(Text(row[i].text, style="bold" if row[i].best else "") for i in shown))
         screen.print(table)

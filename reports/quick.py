@@ -17,7 +17,7 @@ report = rb.Report(
     methods=("conventional", "abraham", "hartley", "fusiello", "local-homography"),
     image_width=640,
     quality="fast",
-    spp=16,
+    spp=8,
     metrics=("geometry", "row_error", "row_error_features", "timing"),
     match_noise_px=0.1,
 )

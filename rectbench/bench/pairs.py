@@ -7,7 +7,7 @@ import sys
 from contextlib import suppress
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rectbench.bench.keys import Inputs, code_digest, derived_seed, versions
 from rectbench.bench.planning import PairTask
@@ -21,6 +21,9 @@ from rectbench.rendering.world import World
 from rectbench.rendering.xml_world import XmlWorld
 from rectbench.rigs import Rig, load_rig
 from rectbench.rigs.motions import MOTIONS
+
+if TYPE_CHECKING:
+    from rectbench.rendering.pair import Stage
 
 TRUTH, IMAGES = "truth", "images"
 GEOMETRY_CODE = ("errors", "cameras", "rigs")
@@ -128,20 +131,13 @@ def _folder(kind: str, pair: PairTask, store: Store) -> Path:
 
 
 def _render(pair: PairTask, store: Store, *, truth: bool, images: bool) -> None:
-    from rectbench.rendering.pair import render_pair  # needs Mitsuba; a stored pair does not
-
-    rendered, exact = render_pair(
-        build_world(pair.scene_source, pair.seed),
-        placed_rig(pair),
-        seed=render_seed(pair.scene, pair.rig, pair.motion, pair.seed),
-        spp=pair.spp,
-        quality=pair.quality,
-        truth=truth,
-        images=images,
-    )
-    if exact is not None:
+    stage, rig = set_stage(pair.scene_source, pair.seed, pair.quality), placed_rig(pair)
+    if truth:
+        exact = stage.survey(rig)
         store.write(TRUTH, truth_inputs(pair), lambda folder: exact.save(folder / "truth.npz"))
-    if rendered is not None:
+    if images:
+        noise = render_seed(pair.scene, pair.rig, pair.motion, pair.seed)
+        rendered = stage.photograph(rig, seed=noise, spp=pair.spp)
         store.write(IMAGES, image_inputs(pair), rendered.save)
 
 
@@ -156,11 +152,15 @@ def _give_memory_back() -> None:
 
 
 @lru_cache(maxsize=1)
-def build_world(scene_source: str, seed: int) -> World | XmlWorld:
-    """The world of a scene; kept, since the rigs of one scene are rendered one after another.
+def set_stage(scene_source: str, seed: int, quality: str) -> Stage:
+    """A scene set up in the renderer; kept, since the rigs of one scene are rendered one after another."""
+    from rectbench.rendering.pair import Stage  # needs Mitsuba; a stored pair does not
 
-    Raises InvalidResult where the scene returns something else.
-    """
+    return Stage.of(build_world(scene_source, seed), quality)
+
+
+def build_world(scene_source: str, seed: int) -> World | XmlWorld:
+    """The world of a scene. Raises InvalidResult where the scene returns something else."""
     scene = registry("scenes").get(scene_source).value
     world = scene.builder(seed)
     if not isinstance(world, World | XmlWorld):
