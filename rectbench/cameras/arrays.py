@@ -36,9 +36,12 @@ def drjit_namespace() -> Any:
     llvm.require()
     import drjit as dr
 
-    names = ("sin", "cos", "tan", "asin", "acos", "atan2", "sqrt", "hypot", "minimum", "maximum", "abs")
-    same = {name: getattr(dr, name) for name in (*names, "isfinite")}
-    return SimpleNamespace(where=dr.select, **same)
+    def hypot(a: Any, b: Any) -> Any:
+        return dr.sqrt(a * a + b * b)  # dr.hypot guards against overflow, which no ray comes near
+
+    names = ("sin", "cos", "tan", "asin", "acos", "atan2", "sqrt", "minimum", "maximum", "abs", "isfinite")
+    same = {name: getattr(dr, name) for name in names}
+    return SimpleNamespace(where=dr.select, hypot=hypot, **same)
 
 
 def repeat_until_settled(

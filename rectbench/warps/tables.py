@@ -57,11 +57,11 @@ def _fill_compiled(
     from drjit.llvm import Float, Float64, UInt32
 
     width, height = columns[0].size, rows[0].size
-    width_variable = UInt32(width)
-    dr.make_opaque(width_variable)
+    per_row = Float64(1 / width)
+    dr.make_opaque(per_row)
     index = dr.arange(UInt32, width * height)
-    y = index // width_variable
-    x = index - y * width_variable
+    y = UInt32((Float64(index) + 0.5) * per_row)  # a whole-number division costs more than the lens
+    x = index - y * UInt32(dr.opaque(UInt32, width))
     column = tuple(dr.gather(Float64, Float64(values), x) for values in columns)
     row = tuple(dr.gather(Float64, Float64(values), y) for values in rows)
     maps = [Float(m) for m in _source_pixel(warp, opaque(warp.constants), column, row, xp)]
