@@ -8,6 +8,7 @@ import rectbench as rb
 START_FOCALS = 3
 """Starting focal lengths, spread between the bounds; the best end is kept."""
 FEW_MATCHES = 100
+HALF_TURN = np.diag([-1.0, -1.0, 1.0])
 VIEW_DEG = (10.0, 150.0)
 """The focal length is held to views between these, the plausible ones."""
 
@@ -36,18 +37,19 @@ class Fusiello(rb.HomographyRectifier):
 
         # Small rotations leave the focal length open: without bounds noise would carry it anywhere.
         shortest, longest = (view.size[0] / 2 / np.tan(np.radians(fov) / 2) for fov in reversed(VIEW_DEG))
-        bounds = tuple(
-            np.append([angle] * 5, np.log(f / unit)) for angle, f in ((-4, shortest), (4, longest))
-        )
+        free = [np.inf] * 5
+        bounds = [*np.negative(free), np.log(shortest / unit)], [*free, np.log(longest / unit)]
         # A few matches tell which start is good; all of them then finish it.
         few, every = slice(None, None, max(1, len(left) // FEW_MATCHES)), slice(None)
-        roll = upright_roll(*view.matches)
+        roll = upright_roll(rb.fundamental_matrix(*view.matches), view.centre)
         level = np.array([0, roll, 0, 0, roll])
         starts = np.geomspace(shortest, longest, START_FOCALS + 2)[1:-1]
         best = min((fitted(focal) for focal in starts), key=lambda fit: fit.cost)
         best = all_six(best.x, every)
 
         R_left, R_right, focal = unpack(best.x, unit)
+        if np.trace(R_left[:2, :2] + R_right[:2, :2]) < 0:  # a half turn of both leaves the rows as they are
+            R_left, R_right = HALF_TURN @ R_left, HALF_TURN @ R_right
         K = intrinsics(focal, view.centre)
         notes: dict[str, float | str] = {
             "focal_px": focal,
@@ -59,10 +61,10 @@ class Fusiello(rb.HomographyRectifier):
         return K @ R_left @ np.linalg.inv(K), K @ R_right @ np.linalg.inv(K), notes
 
 
-def upright_roll(left: np.ndarray, right: np.ndarray) -> float:
-    """The quarter turn that lays a mostly vertical displacement along the rows; 0 for any other."""
-    along, across = np.median(right - left, axis=0)
-    return 0.0 if abs(across) <= abs(along) else float(np.pi / 2)
+def upright_roll(F: np.ndarray, centre: np.ndarray) -> float:
+    """A quarter turn where the left epipole lies more above the middle than beside it; else 0."""
+    x, y, w = np.linalg.svd(F)[2][-1]
+    return 0.0 if abs(y - w * centre[1]) <= abs(x - w * centre[0]) else float(np.pi / 2)
 
 
 def unpack(p: np.ndarray, unit: float) -> tuple[np.ndarray, np.ndarray, float]:

@@ -41,6 +41,8 @@ def closest_columns(H_0: np.ndarray, H_right: np.ndarray, left: np.ndarray, righ
     """The matrix of first row (a, b, c) that minimises the sum of (a x + b y + c - x')²."""
     x, y = mapped(H_0, left).T
     x_right = mapped(H_right, right)[:, 0]
+    if not np.isfinite([x, y, x_right]).all():
+        raise rb.Unsupported("a match is mapped to infinity: the epipole lies in the undistorted view")
     row, *_ = np.linalg.lstsq(np.column_stack([x, y, np.ones_like(x)]), x_right)
     return np.array([row, [0, 1, 0], [0, 0, 1]])
 

@@ -55,6 +55,8 @@ class LocalHomography(rb.Rectifier):
         (v,) = place((rows,), (bounds.beta,))
         width = max(u_left(bounds.gamma_left.high), u_right(bounds.gamma_right.high)) + 0.5
         size = int(np.ceil(width)), int(np.ceil(v(bounds.beta.high) + 0.5))
+        if not np.isfinite(found.fun):
+            raise rb.InvalidResult(f"the energy is {found.fun} at the start: the view reaches an epipole")
         notes = {"energy": float(found.fun), "iterations": float(found.nit)}
         return rb.Rectification.from_targets(
             problem.rig, rb.Epipolar(u_left, v), rb.Epipolar(u_right, v), size, notes

@@ -97,8 +97,8 @@ def render(
     found = registry("scenes").get(scene)
     source = str(Path(scene).resolve()) if is_path(scene) else str(scene)
     calibrated = rig if isinstance(rig, Rig) else load_rig(rig)
-    if image_width is not None and image_width < 1:
-        raise InvalidInput(f"image_width is {image_width}; expected a width in pixels")
+    if image_width is not None and not (isinstance(image_width, int | np.integer) and image_width > 0):
+        raise InvalidInput(f"image_width is {image_width!r}; expected a width in pixels")
     true_rig = placed(calibrated, found.name, motion, _checked_seed(seed), image_width)
     noise = render_seed(found.name, calibrated.name, motion, seed)
     return render_pair(build_world(source, seed), true_rig, seed=noise, spp=spp, quality=quality)
@@ -161,8 +161,8 @@ def _checked_pixels(pixels: ArrayLike, name: str) -> FloatArray:
 
 
 def _checked_matches(matches: Sequence[ArrayLike]) -> Matches:
-    if len(matches) != 2:
-        raise InvalidInput(f"matches hold {len(matches)} arrays; expected (left [N, 2], right [N, 2])")
+    if not isinstance(matches, Sequence) or len(matches) != 2:
+        raise InvalidInput(f"matches are {type(matches).__name__}; expected (left [N, 2], right [N, 2])")
     left, right = (_checked_pixels(px, f"{side} matches") for px, side in zip(matches, SIDES, strict=True))
     if left.shape != right.shape:
         raise InvalidInput(f"matches have {len(left)} left and {len(right)} right pixels; expected as many")
@@ -170,9 +170,13 @@ def _checked_matches(matches: Sequence[ArrayLike]) -> Matches:
 
 
 def _checked_images(images: StereoPair | Sequence[ArrayLike], rig: Rig) -> Images:
-    given = [getattr(images, side) for side in SIDES] if hasattr(images, "left") else list(images)
+    given: list[Any] = []
+    if hasattr(images, "left") and hasattr(images, "right"):
+        given = [images.left, images.right]
+    elif isinstance(images, Sequence):
+        given = list(images)
     if len(given) != 2:
-        raise InvalidInput(f"images hold {len(given)} arrays; expected (left, right)")
+        raise InvalidInput(f"images are {type(images).__name__}; expected (left, right)")
     arrays: list[NDArray[np.generic]] = [np.asarray(image) for image in given]
     for side, image in zip(SIDES, arrays, strict=True):
         camera = getattr(rig, side)

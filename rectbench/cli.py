@@ -8,6 +8,7 @@ Exit codes: 0 good, 1 a regression or a failed check, 2 wrong usage or a broken 
 from __future__ import annotations
 
 import logging
+import os
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -43,7 +44,7 @@ def main() -> None:
     logging.basicConfig(format="rectbench: %(message)s", level=logging.WARNING)
     try:
         status = app(standalone_mode=False)
-    except RectbenchError as error:
+    except (RectbenchError, OSError) as error:
         status = _complain(error)
     except Exception as error:
         # Typer ships its own copy of Click or uses the installed one: usage errors are known by shape.
@@ -200,7 +201,9 @@ def render(
         str, typer.Argument(metavar="SCENE", help="A scene's name, or a .py or Mitsuba .xml file.")
     ],
     rig: Annotated[str, typer.Argument(metavar="RIG", help="A rig's name, or a calibration file.")],
-    out: Annotated[Path, typer.Option("--out", "-o", help="Folder for images, truth and rig.")],
+    out: Annotated[Path, typer.Option("--out", "-o", help="Folder for images, truth and rig.")] = Path(
+        "rendered"
+    ),
     motion: Annotated[str, typer.Option(help="How the right camera stands to the left.")] = "as-calibrated",
     seed: Annotated[int, typer.Option(help="Of scene, motion and noise.")] = 0,
     spp: Annotated[int, typer.Option(help="Samples a pixel, a power of two.")] = 64,
@@ -210,6 +213,8 @@ def render(
     """Render a rig in a scene: left.png, right.png, truth.npz, truth EXRs and rig.yaml."""
     from rectbench import api
 
+    if not os.access(next(folder for folder in (out, *out.absolute().parents) if folder.exists()), os.W_OK):
+        raise InvalidInput(f"cannot write to {out}; expected a folder of yours")
     pair, truth = api.render(scene, rig, motion, seed, spp, quality, width)
     pair.save(out)
     truth.save(out / "truth.npz")
@@ -223,7 +228,7 @@ def rectify(
     left: Annotated[Path, typer.Argument(metavar="LEFT", help="The left image.")],
     right: Annotated[Path, typer.Argument(metavar="RIGHT", help="The right image.")],
     rig: Annotated[str, typer.Option(metavar="CALIB", help="The rig's calibration file, or a rig's name.")],
-    out: Annotated[Path, typer.Option("--out", "-o", help="Folder for what is made.")],
+    out: Annotated[Path, typer.Option("--out", "-o", help="Folder for what is made.")] = Path("rectified"),
     method: Annotated[
         str, typer.Option("--method", "-m", help="A method's name, or a file.")
     ] = "local-homography",

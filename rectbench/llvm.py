@@ -15,6 +15,7 @@ import sys
 from functools import cache
 from pathlib import Path
 
+from rectbench import atomic
 from rectbench.errors import Unavailable
 
 PATH_VARIABLE = "DRJIT_LIBLLVM_PATH"
@@ -39,7 +40,8 @@ def _shipped_library() -> Path | None:
 
 
 def choose_library() -> None:
-    """Point Dr.Jit at the shipped libLLVM unless the user chose one; call before importing Dr.Jit."""
+    """Provide the libatomic, and unless the user chose one the libLLVM, that Dr.Jit loads at import."""
+    atomic.provide()
     if PATH_VARIABLE in os.environ or "drjit" in sys.modules:
         return
     library = _shipped_library()
@@ -53,8 +55,10 @@ def problem() -> str | None:
     if importlib.util.find_spec("drjit") is None:
         return "the package drjit is not installed"
     choose_library()
-    import drjit
-
+    try:
+        import drjit
+    except (ImportError, NameError) as error:  # its own handler trips where a library is missing
+        return f"drjit cannot be imported: {error.__context__ or error}"
     if not drjit.has_backend(drjit.JitBackend.LLVM):
         return (
             f"no libLLVM found; install {WHEEL}, or point {PATH_VARIABLE} at LLVM {OLDEST_VERSION} or newer"

@@ -10,7 +10,7 @@ from typing import Literal, get_args
 
 import cv2
 
-from rectbench.errors import InvalidResult, Unavailable, Unsupported
+from rectbench.errors import InvalidInput, InvalidResult, Unavailable, Unsupported
 
 Status = Literal["ok", "unsupported", "unavailable", "invalid", "error", "crash", "timeout", "oom"]
 STATUSES: tuple[Status, ...] = get_args(Status)
@@ -44,7 +44,7 @@ def outcome_of(error: BaseException) -> Outcome:
             return Outcome("unsupported", reason)
         case Unavailable():
             return Outcome("unavailable", reason)
-        case InvalidResult():
+        case InvalidResult() | InvalidInput():  # a plugin that builds its answer from bad numbers
             return Outcome("invalid", reason)
         case MemoryError():
             return Outcome("oom", reason or "out of memory")

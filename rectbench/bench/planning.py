@@ -125,6 +125,8 @@ def chosen_names(chosen: Sequence[Any] | None, own: Sequence[Any]) -> list[Any]:
     """What is run in the place of a report's `own` names; a "+" before a name adds it to them."""
     if chosen is None:
         return list(own)
+    if isinstance(chosen, str):  # one name is a list of one, not of its letters
+        chosen = [chosen]
     added = [name[1:] for name in chosen if isinstance(name, str) and name.startswith("+")]
     instead = [name for name in chosen if not (isinstance(name, str) and name.startswith("+"))]
     return [*(instead or (own if added else ())), *added]

@@ -23,7 +23,7 @@ from typing import Any
 from pebble import ProcessExpired, ProcessPool
 
 from rectbench.bench import worker
-from rectbench.bench.outcomes import Outcome
+from rectbench.bench.outcomes import Outcome, outcome_of
 from rectbench.errors import Unavailable
 
 GRACE_S = 30.0
@@ -163,6 +163,8 @@ class Workers:
         except BrokenExecutor:
             slot.replace()
             return None
+        except Exception as error:  # a full disk, an answer that does not travel: this job's, not the run's
+            return outcome_of(error)
 
 
 def _death(exit_code: int) -> str:

@@ -25,7 +25,10 @@ __all__ = ["BoolArray", "Projection", "as_points", "projected_partials"]
 
 def as_points(array: ArrayLike, width: int, name: str) -> FloatArray:
     """`array` as float64 [..., width], or a clear error."""
-    points = np.asarray(array, dtype=np.float64)
+    try:
+        points = np.asarray(array, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise InvalidInput(f"{name} are no array of numbers; expected [..., {width}]") from None
     if points.ndim == 0 or points.shape[-1] != width:
         raise InvalidInput(f"{name} has shape {points.shape}; expected [..., {width}]")
     return points

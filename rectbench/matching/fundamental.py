@@ -11,6 +11,9 @@ from rectbench.cameras.arrays import FloatArray
 from rectbench.cameras.projection import as_points
 from rectbench.errors import InvalidInput
 
+DEGENERATE = 1e-9
+"""Spread, relative to where the points lie, that is rounding."""
+
 
 def fundamental_matrix(px_left: ArrayLike, px_right: ArrayLike) -> FloatArray:
     """F [3, 3] of rank 2 with (right, 1)ᵀ F (left, 1) = 0, Frobenius norm 1, from matches without outliers.
@@ -67,8 +70,11 @@ def _normalisation(points: FloatArray) -> FloatArray:
     """The similarity that brings points to mean 0 and mean distance √2."""
     centre = points.mean(axis=0)
     spread = np.linalg.norm(points - centre, axis=1).mean()
-    if not spread > 0:
-        raise InvalidInput("all matches are the same pixel; expected matches spread over the image")
+    _, across = np.linalg.svd(points - centre, compute_uv=False)
+    if not across > DEGENERATE * (1 + np.abs(centre).max()) * np.sqrt(len(points)):
+        raise InvalidInput(
+            "all matches are the same pixel or in one line; expected them spread over the image"
+        )
     scale = np.sqrt(2) / spread
     return np.array([[scale, 0, -scale * centre[0]], [0, scale, -scale * centre[1]], [0, 0, 1.0]])
 

@@ -138,7 +138,10 @@ def best_stretch(J: FloatArray) -> tuple[float, float]:
     def stretched(logs: FloatArray) -> FloatArray:
         return _residuals(J * np.exp(logs)[:, None]).ravel()
 
-    s_u, s_v = map(float, np.exp(least_squares(stretched, np.log([scale, scale]), method="lm").x))
+    # Near the collapse a long and narrow image can be better than a small one: two more starts.
+    starts = np.log([[scale, scale], [4 * scale, scale / 4], [scale / 4, 4 * scale]])
+    best = min((least_squares(stretched, start, method="lm") for start in starts), key=lambda fit: fit.cost)
+    s_u, s_v = map(float, np.exp(best.x))
     return s_u, s_v
 
 

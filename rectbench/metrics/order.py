@@ -15,7 +15,7 @@ ORDER_PIXELS = 5_000
 
 
 def order(rect: Rectification, rig: Rig) -> dict[str, float]:
-    """Least ∂û/∂γ and ∂v̂/∂β in px/rad, share of pixels with det J > 0, and the closure of the inverse.
+    """Least ∂û/∂γ and ∂v̂/∂β in px/rad, share of pixels where both are positive, closure of the inverse.
 
     (β, γ) belong to the true `rig`. Closure is the greatest |inverse(forward(x)) - x| in source
     pixels. All over pixels of both images that stay in the frame.
@@ -48,6 +48,6 @@ def _side(warp: Warp, R_epi_cam: FloatArray, size: tuple[int, int]) -> tuple[Flo
     to_pixel = J @ warp.source.project_jacobian(rays)
     du_dgamma = (to_pixel[..., 0, :] * d_gamma).sum(axis=-1)
     dv_dbeta = (to_pixel[..., 1, :] * d_beta).sum(axis=-1)
-    upright = (np.linalg.det(J) > 0).astype(float)
+    upright = ((du_dgamma > 0) & (dv_dbeta > 0)).astype(float)
     closure = np.linalg.norm(warp.inverse(mapped) - pixels, axis=-1)
     return du_dgamma, dv_dbeta, upright, closure

@@ -40,7 +40,7 @@ def load_rig(source: RigSource | Sequence[RigSource], size: tuple[int, int] | No
         if isinstance(source, str) and _may_be_name(source):
             return _built_in(source)
         return _read([source], size)
-    paths = list(source)
+    paths = list(source) if isinstance(source, Sequence) else []
     if not paths or not all(isinstance(path, str | os.PathLike) for path in paths):
         raise InvalidInput("a rig's files are an empty list or hold no paths; expected a list of paths")
     return _read(paths, size)

@@ -50,7 +50,7 @@ class Rig:
                 raise InvalidInput(f"{side} is {type(getattr(self, side)).__name__}; expected a Camera")
         if not isinstance(self.name, str) or not self.name or not self.name.isprintable():
             raise InvalidInput(f"the rig's name is {self.name!r}; expected one printable line")
-        object.__setattr__(self, "R_right_left", _checked_rotation(self.R_right_left))
+        object.__setattr__(self, "R_right_left", checked_rotation(self.R_right_left, "R_right_left"))
         object.__setattr__(self, "t_right_left", _checked_translation(self.t_right_left))
 
     def __eq__(self, other: object) -> bool:
@@ -99,13 +99,14 @@ class Rig:
 
 
 @np.errstate(over="ignore", invalid="ignore")
-def _checked_rotation(R: Any) -> FloatArray:
-    matrix = _finite(R, "R_right_left", "a 3x3 rotation", (3, 3))
+def checked_rotation(R: Any, name: str) -> FloatArray:
+    """`R` as an exact rotation [3, 3], read-only; InvalidInput, by its name, for what is none."""
+    matrix = _finite(R, name, "a 3x3 rotation", (3, 3))
     error = float(np.abs(matrix.T @ matrix - np.eye(3)).max())
     determinant = float(np.linalg.det(matrix))
     if not (error <= ROTATION_TOLERANCE and determinant > 0):
         raise InvalidInput(
-            f"R_right_left is no rotation (RᵀR is off by {error:.2g}, determinant {determinant:.3g}); "
+            f"{name} is no rotation (RᵀR is off by {error:.2g}, determinant {determinant:.3g}); "
             "expected RᵀR = 1, determinant +1"
         )
     if error > EXACT_ROTATION:

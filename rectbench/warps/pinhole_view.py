@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
+from scipy.linalg import rq
 
 from rectbench.cameras import Camera
 from rectbench.cameras.arrays import FloatArray
@@ -100,7 +101,7 @@ class HomographyRectifier(Rectifier):
         H_left, H_right, notes = self.homographies(view, options)
         centring = _centring(view.centre, H_left, H_right)
         warps = [
-            Warp(camera, np.eye(3), Perspective(_facing(centring @ H @ view.K)))
+            _turned(camera, centring @ H @ view.K)
             for camera, H in ((problem.rig.left, H_left), (problem.rig.right, H_right))
         ]
         stated = {"view_fov_deg": view.fov_deg, "view_matches": float(len(view.matches.left))}
@@ -117,6 +118,14 @@ def _centring(centre: FloatArray, H_left: FloatArray, H_right: FloatArray) -> Fl
     return np.array([[1, 0, shift[0]], [0, 1, shift[1]], [0, 0, 1.0]])
 
 
-def _facing(P: FloatArray) -> FloatArray:
-    """P with the sign, which a homography leaves free, that shows what the camera looks at."""
-    return P * (1.0 if P[2, 2] > 0 else -1.0)
+def _turned(camera: Camera, P: FloatArray) -> Warp:
+    """The warp of pixels from rays P = T R, split into the rotation R and an upper triangular T.
+
+    A homography of a pinhole image is a turned camera with other intrinsics: for a quasi-Euclidean
+    method those it meant, for a projective one those it amounts to. The sign, which a homography
+    leaves free, is the one that shows what the camera looks at.
+    """
+    T, R = rq(P * (1.0 if P[2, 2] > 0 else -1.0))
+    signs = np.sign(np.diag(T))
+    signs[0] *= np.linalg.det(signs[:, None] * R)  # a mirrored image is mirrored by T, never by R
+    return Warp(camera, signs[:, None] * R, Perspective(np.asarray(T * signs, dtype=np.float64)))

@@ -20,6 +20,8 @@ from rectbench.warps.targets import Target
 from rectbench.warps.warp import Warp
 
 Side = Literal["left", "right"]
+REMAPPED_TYPES = tuple(map(np.dtype, ("uint8", "uint16", "int16", "float32", "float64")))
+"""What `cv2.remap` resamples."""
 LARGEST_SIDE_PX = 32766
 """`cv2.remap` takes no larger image."""
 
@@ -40,12 +42,16 @@ class Rectification:
     notes: Mapping[str, float | str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        width, height = (int(value) for value in self.size)
+        try:
+            width, height = (int(value) for value in self.size)
+        except (TypeError, ValueError, OverflowError):
+            raise InvalidInput(f"size is {self.size!r}; expected (width, height) in pixels") from None
         if not (1 <= width <= LARGEST_SIDE_PX and 1 <= height <= LARGEST_SIDE_PX):
             raise InvalidInput(
                 f"the rectified image would be {width}x{height} px; expected 1 to {LARGEST_SIDE_PX} a side"
             )
         object.__setattr__(self, "size", (width, height))
+        object.__setattr__(self, "notes", {str(k): _note(k, v) for k, v in self.notes.items()})
 
     @classmethod
     def from_targets(
@@ -103,6 +109,10 @@ class Rectification:
 
     def _remap_one(self, side: Side, image: NDArray[np.generic], interpolation: int) -> NDArray[np.generic]:
         source = self.warp(side).source
+        image = np.asarray(image)
+        if image.dtype not in REMAPPED_TYPES:
+            names = ", ".join(map(str, REMAPPED_TYPES))
+            raise InvalidInput(f"the {side} image holds {image.dtype}; expected one of {names}")
         if image.shape[:2] != (source.height, source.width):
             raise InvalidInput(
                 f"the {side} image is {image.shape[1]}x{image.shape[0]} px; "
@@ -121,7 +131,13 @@ class Rectification:
         reconstruction with atan2 in the place of arctan). NaN where the rays do not meet in front.
         """
         px_rect = as_points(px_rect, 2, "px_rect")
-        shift = np.stack(np.broadcast_arrays(np.asarray(disparity_px, dtype=float), 0.0), axis=-1)
+        try:
+            disparity = np.broadcast_to(np.asarray(disparity_px, dtype=float), px_rect.shape[:-1])
+        except (TypeError, ValueError):
+            raise InvalidInput(
+                f"disparity_px does not fit px_rect; expected {px_rect.shape[:-1]} numbers"
+            ) from None
+        shift = np.stack([disparity, np.zeros_like(disparity)], axis=-1)
         rays_left = self._camera_rays(self.left, px_rect)
         rays_right = self._camera_rays(self.right, px_rect - shift)
         R_epi_left, R_epi_right = rectifying_rotations(self.rig)
@@ -138,6 +154,16 @@ class Rectification:
     def _camera_rays(warp: Warp, px_rect: FloatArray) -> FloatArray:
         rays: FloatArray = warp.target.unproject(px_rect)[0] @ warp.R_rect_cam
         return rays
+
+
+def _note(name: str, value: object) -> float | str:
+    if isinstance(value, str):
+        return value
+    try:
+        return float(value)  # type: ignore[arg-type]
+    except (TypeError, ValueError):
+        kind = type(value).__name__
+        raise InvalidInput(f"notes[{name!r}] is {kind}; expected text or a number") from None
 
 
 def _along_and_off(rays: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -11,7 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
+from rectbench.cameras import Camera
 from rectbench.cameras.arrays import FloatArray
+from rectbench.errors import InvalidInput
 from rectbench.rigs import Rig
 from rectbench.warps.frame import rectifying_rotations
 from rectbench.warps.rectification import Rectification
@@ -81,15 +83,30 @@ def pose_problem(
     images: Images | None = None,
     seed: int = 0,
 ) -> Problem:
-    """The problem for a rig; what is left out is the usual: evaluation pixels, matches made from the pose."""
+    """The problem for a rig; what is left out is the usual: evaluation pixels, matches made from the pose.
+
+    Of given pixels each image uses those its lens sees; InvalidInput where it sees none.
+    """
     return Problem(
         rig=rig,
-        pixels_left=evaluation_pixels(rig.left) if pixels is None else pixels,
-        pixels_right=evaluation_pixels(rig.right) if pixels is None else pixels,
+        pixels_left=_pixels_of(rig.left, pixels, "left"),
+        pixels_right=_pixels_of(rig.right, pixels, "right"),
         known_matches=matches,
         images=images,
         seed=seed,
     )
+
+
+def _pixels_of(camera: Camera, pixels: FloatArray | None, side: str) -> FloatArray:
+    """The given pixels that the lens sees, or the evaluation grid."""
+    if pixels is None:
+        return evaluation_pixels(camera)
+    seen = pixels[camera.unproject(pixels)[1]]
+    if not len(seen):
+        raise InvalidInput(
+            f"the {side} lens sees none of the {len(pixels)} pixels; expected pixels of the image"
+        )
+    return seen
 
 
 NEAR_IN_BASELINES, FAR_IN_BASELINES = 5.0, 200.0

@@ -36,6 +36,9 @@ class Target(Projection):
         return self.unproject_formula(c, u, v, xp)
 
 
+WORST_CONDITION = 1e13
+
+
 @dataclass(frozen=True, eq=False)
 class Perspective(Target):
     """(û, v̂, 1) ~ matrix @ ray, valid where the third coordinate is positive."""
@@ -45,7 +48,11 @@ class Perspective(Target):
 
     def __post_init__(self) -> None:
         matrix = np.array(self.matrix, dtype=np.float64)
-        if matrix.shape != (3, 3) or not np.isfinite(matrix).all() or abs(np.linalg.det(matrix)) < 1e-300:
+        if (
+            matrix.shape != (3, 3)
+            or not np.isfinite(matrix).all()
+            or np.linalg.cond(matrix) > WORST_CONDITION
+        ):
             raise InvalidInput("Perspective needs a finite, invertible 3x3 matrix")
         matrix.flags.writeable = False
         object.__setattr__(self, "matrix", matrix)

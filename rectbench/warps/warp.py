@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 from rectbench.cameras import Camera
 from rectbench.cameras.arrays import Constants, FloatArray, evaluate_points
 from rectbench.cameras.projection import as_points, projected_partials
+from rectbench.rigs.rig import checked_rotation
 from rectbench.warps.targets import Target
 
 
@@ -21,6 +22,9 @@ class Warp:
     R_rect_cam: FloatArray = field(repr=False)
     """[3, 3], from the camera's frame to the rectified one."""
     target: Target
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "R_rect_cam", checked_rotation(self.R_rect_cam, "R_rect_cam"))
 
     @property
     def constants(self) -> Constants:

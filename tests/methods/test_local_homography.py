@@ -86,3 +86,14 @@ def test_other_pixels_are_minimised_where_given() -> None:
         usual, pair, pixels=corner
     )
     assert rb.metrics.distortion(there, pair) > rb.metrics.distortion(usual, pair)
+
+
+def test_pixels_that_a_lens_does_not_see_are_left_out() -> None:
+    pair = aligned_rig(400, 400, 170, max_angle_deg=85)
+    pixels = np.stack(np.meshgrid(np.arange(0.0, 400, 20), np.arange(0.0, 400, 20)), -1).reshape(-1, 2)
+    seen = pixels[pair.left.unproject(pixels)[1]]
+    assert len(seen) < len(pixels)
+    everywhere, masked = rb.rectify(pair, pixels=pixels), rb.rectify(pair, pixels=seen)
+    np.testing.assert_array_equal(everywhere.maps("left"), masked.maps("left"))
+    with pytest.raises(rb.InvalidInput, match="sees none of the 1 pixels"):
+        rb.rectify(pair, pixels=[[0.0, 0.0]])

@@ -128,3 +128,30 @@ def test_methods_from_matches_do_not_look_at_the_pose() -> None:
     for method in ("hartley", "fusiello"):
         maps = [rb.rectify(r, method=method, matches=(left, right)).maps("left") for r in (pair, wrong)]
         np.testing.assert_array_equal(*maps)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_fusiello_never_turns_the_images_upside_down(seed: int) -> None:
+    # A short baseline and a tilt: the images move more up and down than sideways.
+    pair = rig(rotation_deg=(2.0, 0.3, 1.0), centre_m=(0.06, 0.001, 0.0))
+    _, left, right = points_before(pair, 300, seed)
+    noise = np.random.default_rng(seed).normal(0, 0.05, (2, *left.shape))
+    rect = rb.rectify(pair, method="fusiello", matches=(left + noise[0], right + noise[1]))
+    assert rb.metrics.order(rect, pair)["order_upright"] == 1
+
+
+def test_fusiello_is_a_pair_of_rotations() -> None:
+    pair = rig(rotation_deg=(2, 4, 3))
+    rect = rb.rectify(pair, method="fusiello")
+    true_left, true_right = rb.rectifying_rotations(pair)
+    # Up to the turn about the baseline, which matches leave free, they are the rig's own.
+    np.testing.assert_allclose(rect.R_rect_left[0], true_left[0], atol=1e-6)
+    np.testing.assert_allclose(rect.R_rect_right[0], true_right[0], atol=1e-6)
+    np.testing.assert_allclose(np.tril(rect.left.target.matrix, -1), 0, atol=1e-9)
+
+
+def test_degenerate_matches_are_refused_at_once() -> None:
+    pair = rig()
+    same = np.full((30, 2), 150.0)
+    with pytest.raises(rb.InvalidInput, match="same pixel or in one line"):
+        rb.rectify(pair, method="hartley", matches=(same, same + 4))

@@ -118,6 +118,15 @@ def test_a_mirrored_image_is_not_upright() -> None:
     assert result["order_du_dgamma_min"] < 0
 
 
+def test_an_image_upside_down_is_not_upright_though_its_determinant_is_positive() -> None:
+    pair = aligned_rig(480, 320, 100)
+    rect = rb.rectify(pair, method="conventional")
+    half_turn = np.diag([-1.0, -1.0, 1.0])
+    turned = [rb.Warp(w.source, half_turn @ w.R_rect_cam, w.target) for w in (rect.left, rect.right)]
+    result = rb.metrics.order(rb.Rectification(pair, turned[0], turned[1], rect.size), pair)
+    assert result["order_upright"] == 0
+
+
 def test_measure_gives_every_column_of_the_contract() -> None:
     pair = rig()
     _, px_left, px_right = points_before(pair, 100)

@@ -135,3 +135,30 @@ def test_valid_marks_exactly_the_pixels_that_read_source_pixels() -> None:
     assert 0.3 < mask.mean() < 1
     assert (warped[mask] == 255).all()
     assert (warped[~mask] < 255).mean() > 0.95
+
+
+@pytest.mark.parametrize("R", [5 * np.eye(3), np.diag([1.0, 1, 0]), np.full((3, 3), np.nan), np.eye(2)])
+def test_a_warp_turns_by_a_rotation_only(R: np.ndarray) -> None:
+    target = rb.Perspective.from_focal(100, 50, 50)
+    with pytest.raises(rb.InvalidInput, match="R_rect_cam"):
+        rb.Warp(rig().left, R, target)
+
+
+@pytest.mark.parametrize("size", [10, (float("nan"), 10), (0, 5), (40_000, 10), "ab"])
+def test_a_size_that_makes_no_image_is_refused(size: object) -> None:
+    rect = rb.rectify(rig())
+    with pytest.raises(rb.InvalidInput):
+        rb.Rectification(rect.rig, rect.left, rect.right, size)  # type: ignore[arg-type]
+
+
+def test_notes_are_text_or_numbers() -> None:
+    rect = rb.rectify(rig())
+    kept = rb.Rectification(rect.rig, rect.left, rect.right, rect.size, {"a": np.float32(2), "b": "c"})
+    assert kept.notes == {"a": 2.0, "b": "c"}
+    with pytest.raises(rb.InvalidInput, match=r"notes\['x'\] is ndarray; expected text or a number"):
+        rb.Rectification(rect.rig, rect.left, rect.right, rect.size, {"x": np.zeros(2)})  # type: ignore[dict-item]
+
+
+def test_triangulation_wants_a_disparity_for_each_pixel() -> None:
+    with pytest.raises(rb.InvalidInput, match="disparity_px"):
+        rb.rectify(rig()).triangulate(np.zeros((5, 2)), np.zeros(4))

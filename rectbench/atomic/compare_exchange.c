@@ -1,0 +1,22 @@
+/* The one function of GCC's libatomic that Dr.Jit's thread pool calls, for Linux x86-64 machines
+ * without that library (a bare Debian has none). Built into libatomic.so.1 beside this file by
+ *
+ *   gcc -Os -mcx16 -shared -fPIC -nostdlib -Wl,-soname,libatomic.so.1 -Wl,--build-id=none -s \
+ *       -o libatomic.so.1 compare_exchange.c
+ *
+ * and loaded only where the system has no libatomic. `lock cmpxchg16b` is a full barrier, so both
+ * memory orders are met whatever they are.
+ */
+_Bool __atomic_compare_exchange_16(volatile void *object, void *expected, unsigned __int128 desired,
+                                   int success_order, int failure_order)
+{
+    unsigned __int128 before = *(unsigned __int128 *)expected;
+    unsigned __int128 found =
+        __sync_val_compare_and_swap((volatile unsigned __int128 *)object, before, desired);
+    (void)success_order;
+    (void)failure_order;
+    if (found == before)
+        return 1;
+    *(unsigned __int128 *)expected = found;
+    return 0;
+}
