@@ -1,8 +1,8 @@
 /* The one function of GCC's libatomic that Dr.Jit's thread pool calls, for Linux x86-64 machines
  * without that library (a bare Debian has none). Built into libatomic.so.1 beside this file by
  *
- *   gcc -Os -mcx16 -shared -fPIC -nostdlib -Wl,-soname,libatomic.so.1 -Wl,--build-id=none -s \
- *       -o libatomic.so.1 compare_exchange.c
+ *   gcc -Os -mcx16 -shared -fPIC -nostdlib -fno-builtin -s -Wl,-soname,libatomic.so.1 \
+ *       -Wl,--version-script,libatomic.map -Wl,--build-id=none -o libatomic.so.1 compare_exchange.c
  *
  * and loaded only where the system has no libatomic. `lock cmpxchg16b` is a full barrier, so both
  * memory orders are met whatever they are.
