@@ -162,11 +162,15 @@ def _checked_pixels(pixels: ArrayLike, name: str) -> FloatArray:
 
 def _checked_matches(matches: Sequence[ArrayLike]) -> Matches:
     if not isinstance(matches, Sequence) or len(matches) != 2:
-        raise InvalidInput(f"matches are {type(matches).__name__}; expected (left [N, 2], right [N, 2])")
+        raise InvalidInput(f"matches {_held(matches)}; expected (left [N, 2], right [N, 2])")
     left, right = (_checked_pixels(px, f"{side} matches") for px, side in zip(matches, SIDES, strict=True))
     if left.shape != right.shape:
         raise InvalidInput(f"matches have {len(left)} left and {len(right)} right pixels; expected as many")
     return Matches(left, right)
+
+
+def _held(given: object) -> str:
+    return f"hold {len(given)} arrays" if isinstance(given, Sequence) else f"are {type(given).__name__}"
 
 
 def _checked_images(images: StereoPair | Sequence[ArrayLike], rig: Rig) -> Images:
@@ -176,7 +180,7 @@ def _checked_images(images: StereoPair | Sequence[ArrayLike], rig: Rig) -> Image
     elif isinstance(images, Sequence):
         given = list(images)
     if len(given) != 2:
-        raise InvalidInput(f"images are {type(images).__name__}; expected (left, right)")
+        raise InvalidInput(f"images {_held(images)}; expected (left, right)")
     arrays: list[NDArray[np.generic]] = [np.asarray(image) for image in given]
     for side, image in zip(SIDES, arrays, strict=True):
         camera = getattr(rig, side)

@@ -24,7 +24,7 @@ from pebble import ProcessExpired, ProcessPool
 
 from rectbench.bench import worker
 from rectbench.bench.outcomes import Outcome, outcome_of
-from rectbench.errors import Unavailable
+from rectbench.errors import RectbenchError, Unavailable
 
 GRACE_S = 30.0
 """Past its time-out, a job whose worker pebble could not stop is given up with its whole slot."""
@@ -163,6 +163,8 @@ class Workers:
         except BrokenExecutor:
             slot.replace()
             return None
+        except RectbenchError:  # the bench's own trouble, such as a store that cannot be written
+            raise
         except Exception as error:  # a full disk, an answer that does not travel: this job's, not the run's
             return outcome_of(error)
 

@@ -41,7 +41,10 @@ class Mesh:
 
 @dataclass(frozen=True, eq=False)
 class Instances:
-    """Meshes repeated at many places without being copied."""
+    """Meshes repeated at many places without being copied.
+
+    Few places of large meshes: the renderer compiles code for each placement, seconds for hundreds.
+    """
 
     name: str
     meshes: tuple[Mesh, ...]

@@ -72,7 +72,7 @@ def misbehaved(tmp_path_factory: pytest.TempPathFactory) -> pd.DataFrame:
         ("text", "invalid", "text returned str; expected a Rectification"),
         ("nothing", "invalid", "nothing returned NoneType; expected a Rectification"),
         ("nan", "invalid", "left.forward gives no finite pixel"),
-        ("huge", "error", "1000000x10"),
+        ("huge", "invalid", "1000000x10"),
         ("foreign", "invalid", "starts from another camera"),
         ("good0", "ok", ""),
         ("good1", "ok", ""),
