@@ -237,6 +237,9 @@ def rectify(
         typer.Option("--option", metavar="NAME=VALUE", help="An option of the method; repeatable."),
     ] = None,
     seed: Annotated[int, typer.Option(help="Of the method's random choices.")] = 0,
+    max_angle_deg: Annotated[
+        float | None, typer.Option(help="The image circle: the lenses show nothing beyond this angle.")
+    ] = None,
 ) -> None:
     """Rectify an image pair: rectified images, masks, lookup tables and a preview with scan lines."""
     from rectbench import api
@@ -247,6 +250,8 @@ def rectify(
 
     pair = StereoPair.read(left, right)
     calibrated = load_rig(rig, size=pair.left.shape[1::-1])
+    if max_angle_deg is not None:
+        calibrated = calibrated.within(max_angle_deg)
     options = read_options([f"method.{text}" for text in option or []]).get("method", {})
     rectification = api.rectify(calibrated, method, images=pair, seed=seed, **options)
     for file in write_rectified(rectification, pair, out):

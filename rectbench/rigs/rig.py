@@ -91,6 +91,11 @@ class Rig:
         """The same rig with images `factor` times as large."""
         return replace(self, left=self.left.scaled(factor), right=self.right.scaled(factor))
 
+    def within(self, max_angle_deg: float) -> Rig:
+        """The same rig, its lenses showing nothing beyond this angle from their axes (the image circle)."""
+        left, right = (replace(camera, max_angle_deg=max_angle_deg) for camera in (self.left, self.right))
+        return replace(self, left=left, right=right)
+
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the rig as the project's own YAML, see `rectbench.rigs.native`."""
         from rectbench.rigs.native import write_rig

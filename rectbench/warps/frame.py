@@ -70,7 +70,8 @@ def refuse_epipole_in_view(rig: Rig) -> None:
                 (u, v), _ = camera.project(ray)
                 raise Unsupported(
                     f"an epipole of rig {rig.name} lies in the {side} view, at pixel "
-                    f"({u:.0f}, {v:.0f}) of {camera.width}x{camera.height}"
+                    f"({u:.0f}, {v:.0f}) of {camera.width}x{camera.height}; if the lens shows nothing there, "
+                    "state its image circle (max_angle_deg)"
                 )
 
 

@@ -63,3 +63,10 @@ def test_an_epipole_just_inside_the_image_circle_is_refused() -> None:
 def test_centre_resolution_is_the_focal_length_of_a_fisheye() -> None:
     lens = rb.Camera("equidistant", (400, 400), {"fx": 150, "fy": 150, "cx": 200, "cy": 200})
     assert rb.centre_resolution_px(rb.Rig(lens, lens, np.eye(3), [-1, 0, 0])) == pytest.approx(150, rel=1e-12)
+
+
+def test_an_image_circle_takes_an_epipole_out_of_the_view() -> None:
+    wide = aligned_rig(420, 420, 200)
+    with pytest.raises(rb.Unsupported, match="state its image circle"):
+        rb.refuse_epipole_in_view(wide)
+    rb.refuse_epipole_in_view(wide.within(85))
