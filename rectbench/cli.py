@@ -8,7 +8,6 @@ Exit codes: 0 good, 1 a regression or a failed check, 2 wrong usage or a broken 
 from __future__ import annotations
 
 import logging
-import os
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -212,9 +211,9 @@ def render(
 ) -> None:
     """Render a rig in a scene: left.png, right.png, truth.npz, truth EXRs and rig.yaml."""
     from rectbench import api
+    from rectbench.bench.run_folder import check_writable
 
-    if not os.access(next(folder for folder in (out, *out.absolute().parents) if folder.exists()), os.W_OK):
-        raise InvalidInput(f"cannot write to {out}; expected a folder of yours")
+    check_writable(out)
     pair, truth = api.render(scene, rig, motion, seed, spp, quality, width)
     pair.save(out)
     truth.save(out / "truth.npz")

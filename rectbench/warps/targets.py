@@ -37,6 +37,7 @@ class Target(Projection):
 
 
 WORST_CONDITION = 1e13
+"""Beyond this the inverse has no digits left."""
 
 
 @dataclass(frozen=True, eq=False)
