@@ -26,6 +26,10 @@ class LocalHomography(rb.Rectifier):
         columns: Literal["per-image", "shared"] = rb.option(
             "per-image", "whether each image has its own Ψ_u or both share one"
         )
+        start: Literal["equidistant", "random"] = rb.option(
+            "equidistant", "where the minimisation starts: Ψ(θ) = f θ, Abraham's map, or anywhere"
+        )
+        draw: int = rb.option(0, "which of the random starts", ge=0)
 
     def fit(self, problem: rb.Problem, options: Options) -> rb.Rectification:
         rb.refuse_epipole_in_view(problem.rig)
@@ -34,29 +38,38 @@ class LocalHomography(rb.Rectifier):
         if options.columns == "shared":
             bounds = bounds._replace(gamma_left=bounds.gamma, gamma_right=bounds.gamma)
         energy = Energy(problem, options)
-        constraint = {
-            "type": "ineq",
-            "fun": lambda c: slopes(c, bounds) - LEAST_SLOPE,
-            "jac": lambda c: slope_gradients(c, bounds),
-        }
-        start = np.tile([1.0, 0.0, 0.0], 3)  # Ψ(θ) = f θ, Abraham's equidistant map
+        start = focal * starting_point(options)
+        if not np.isfinite(energy(start)[0]):
+            raise rb.InvalidResult("the energy is infinite at the start: the view reaches an epipole")
+        # The solver begins as if L were round; in these coordinates it nearly is.
+        rounding = energy.rounding(start)
+
+        def coefficients(y: np.ndarray) -> np.ndarray:
+            return start + rounding @ y
+
+        def energy_and_gradient(y: np.ndarray) -> tuple[float, np.ndarray]:
+            value, gradient = energy(coefficients(y))
+            return value, gradient @ rounding
+
         found = minimize(
-            lambda c: energy(c * focal, focal),
-            start,
+            energy_and_gradient,
+            np.zeros(9),
             jac=True,
             method="SLSQP",
-            constraints=constraint,
+            constraints={
+                "type": "ineq",
+                "fun": lambda y: slopes(coefficients(y), bounds) / focal - LEAST_SLOPE,
+                "jac": lambda y: slope_gradients(coefficients(y), bounds) @ rounding / focal,
+            },
             options={"maxiter": 500, "ftol": 1e-13},
         )
-        left, right, rows = (focal * found.x).reshape(3, 3)
+        left, right, rows = coefficients(found.x).reshape(3, 3)
         if options.columns == "shared":
             right = left
         u_left, u_right = place((left, right), (bounds.gamma_left, bounds.gamma_right))
         (v,) = place((rows,), (bounds.beta,))
         width = max(u_left(bounds.gamma_left.high), u_right(bounds.gamma_right.high)) + 0.5
         size = int(np.ceil(width)), int(np.ceil(v(bounds.beta.high) + 0.5))
-        if not np.isfinite(found.fun):
-            raise rb.InvalidResult(f"the energy is {found.fun} at the start: the view reaches an epipole")
         notes = {"energy": float(found.fun), "iterations": float(found.nit)}
         return rb.Rectification.from_targets(
             problem.rig, rb.Epipolar(u_left, v), rb.Epipolar(u_right, v), size, notes
@@ -78,19 +91,41 @@ class Energy:
         if options.columns == "shared":
             self.columns = np.block([[gamma_left, none_left], [gamma_right, none_right]])
         self.rows = slope_basis(np.concatenate([a[:, 1] for a in angles]))
-        self.weights = np.sqrt([1.0, options.alpha_ratio, options.alpha_skew])[:, None]
+        weights = np.array([1.0, options.alpha_ratio, options.alpha_skew])
+        self.weights = np.sqrt(weights / len(self.rows))[:, None]
 
-    def __call__(self, c: np.ndarray, scale: float) -> tuple[float, np.ndarray]:
-        """L, the mean per pixel, and its derivative by c / scale."""
+    def __call__(self, c: np.ndarray) -> tuple[float, np.ndarray]:
+        """L, the mean per pixel, and its gradient."""
+        loss, J = self.losses(c)
+        return float(loss @ loss), 2 * loss @ J
+
+    def losses(self, c: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Weighted area, ratio and skew losses of all pixels, whose squares sum to L, and their d/dc."""
         A, B = self.columns @ c[:6], self.rows @ c[6:]  # Ψ_u'(γ) and Ψ_v'(β)
         w1, w2 = np.hypot(A * self.gamma_u, B * self.beta_u), np.hypot(A * self.gamma_v, B * self.beta_v)
         skew_u, skew_v = self.gamma_u * self.gamma_v, self.beta_u * self.beta_v
         loss = self.weights * [A * B * self.area - 1, w1 - w2, A**2 * skew_u + B**2 * skew_v]
         by_A = [B * self.area, A * (self.gamma_u**2 / w1 - self.gamma_v**2 / w2), 2 * A * skew_u]
         by_B = [A * self.area, B * (self.beta_u**2 / w1 - self.beta_v**2 / w2), 2 * B * skew_v]
-        pull = 2 * scale / len(A) * self.weights * loss
-        gradient = [(pull * by_A).sum(axis=0) @ self.columns, (pull * by_B).sum(axis=0) @ self.rows]
-        return float((loss**2).sum() / len(A)), np.concatenate(gradient)
+        J_columns = (self.weights * by_A)[..., None] * self.columns
+        J_rows = (self.weights * by_B)[..., None] * self.rows
+        return loss.ravel(), np.concatenate([J_columns, J_rows], axis=-1).reshape(-1, 9)
+
+    def rounding(self, c: np.ndarray) -> np.ndarray:
+        """[9, 9], from coordinates in which L (after Gauss and Newton) has unit curvature at c."""
+        _, J = self.losses(c)
+        curvature = 2 * J.T @ J
+        curvature += 1e-9 * np.trace(curvature) * np.eye(9)  # a coefficient may be without any effect
+        return np.linalg.inv(np.linalg.cholesky(curvature)).T
+
+
+def starting_point(options: LocalHomography.Options) -> np.ndarray:
+    """Coefficients [9] in units of the source's centre resolution; random ones may even fall."""
+    equidistant = np.tile([1.0, 0.0, 0.0], 3)
+    if options.start == "equidistant":
+        return equidistant
+    rng = np.random.default_rng(options.draw)
+    return equidistant * rng.uniform(0.2, 3.0, 9) + rng.normal(0.0, 0.3, 9)
 
 
 def slope_basis(theta: np.ndarray) -> np.ndarray:

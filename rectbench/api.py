@@ -1,8 +1,9 @@
-"""The verbs of `import rectbench as rb`: rectify a rig, render a scene, run a report."""
+"""The verbs of `import rectbench as rb`: estimate a pose, rectify a rig, render a scene, run a report."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +15,8 @@ from rectbench.bench.plugins import is_path, registry
 from rectbench.bench.rectifying import checked_options, fit
 from rectbench.cameras.arrays import FloatArray
 from rectbench.errors import InvalidInput
+from rectbench.matching.features import RATIO
+from rectbench.matching.pose import WORKING_PIXELS, PoseEstimate, pose_from_images
 from rectbench.rigs import Rig, load_rig
 from rectbench.warps import Images, Matches, Rectification, pose_problem
 
@@ -66,6 +69,52 @@ def rectify(
         seed=_checked_seed(seed),
     )
     return fit(plugin, problem, checked_options(plugin, options))
+
+
+def estimate_pose(
+    images: StereoPair | Sequence[ArrayLike],
+    rig: Rig,
+    *,
+    detector: str = "sift",
+    ratio: float = RATIO,
+    farthest: float | None = None,
+    working_pixels: float | None = WORKING_PIXELS,
+    seed: int = 0,
+) -> PoseEstimate:
+    """How the right camera stands to the left one as two photographs show it.
+
+    Parameters
+    ----------
+    images : the two photographs [H, W] or [H, W, channels], of 8 or 16 bits or float, of their
+        cameras' sizes.
+    rig : the calibrated rig. Its cameras are used; its pose is only compared with the estimate.
+    detector : of features: sift, akaze, orb, or surf where OpenCV has it.
+    ratio, farthest : a match must be nearer than the second best by this factor, and its descriptor
+        no farther than this; see `match_features`.
+    working_pixels : a larger image is made as small before features are sought; None leaves it.
+    seed : of the random samples; the same seed gives the same pose to the last bit.
+
+    Returns the pose, with its covariance and the matches it explains; its `note` says where it
+    contradicts the rig's own pose, as that of swapped images does. `estimate.rig(rig)` is the rig
+    in that pose. Raises PoseNotFound, with the reason, where the images tell no pose: too few
+    matches, none that agree, or a turn alone; InvalidInput for images that are not this rig's.
+    """
+    if not isinstance(rig, Rig):
+        raise InvalidInput(f"rig is {type(rig).__name__}; expected a Rig, see rectbench.load_rig")
+    pair = _checked_images(images, rig)
+    found = pose_from_images(
+        rig.left,
+        rig.right,
+        pair,
+        detector=detector,
+        ratio=_checked_positive(ratio, "ratio"),
+        farthest=None if farthest is None else _checked_positive(farthest, "farthest"),
+        working_pixels=None
+        if working_pixels is None
+        else _checked_positive(working_pixels, "working_pixels"),
+        seed=_checked_seed(seed),
+    )
+    return replace(found, note=found.contradiction(rig))
 
 
 def render(
@@ -146,6 +195,12 @@ def _checked_seed(seed: Any) -> int:
     if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or seed < 0:
         raise InvalidInput(f"seed is {seed!r}; expected a whole number from 0 on")
     return int(seed)
+
+
+def _checked_positive(value: Any, name: str) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float | np.number) or not 0 < value < np.inf:
+        raise InvalidInput(f"{name} is {value!r}; expected a number above 0")
+    return float(value)
 
 
 def _checked_pixels(pixels: ArrayLike, name: str) -> FloatArray:

@@ -19,8 +19,11 @@ from rectbench.errors import InvalidInput, RectbenchError, UnknownName
 if TYPE_CHECKING:
     import pandas as pd
 
+    from rectbench.rendering.images import StereoPair
+    from rectbench.warps import Rectification
+
 WRONG_USAGE, INCOMPLETE = 2, 3
-KINDS = ("methods", "scenes", "rigs", "motions", "poses", "reports")
+KINDS = ("methods", "scenes", "rigs", "motions", "poses", "reports", "formats")
 
 app = typer.Typer(
     help="A bench for stereo rectification: render, rectify, measure, report.",
@@ -35,6 +38,28 @@ RunFolder = Annotated[Path, typer.Argument(metavar="RUN", help="A run's folder."
 OptionTexts = Annotated[
     list[str] | None,
     typer.Option("--option", metavar="METHOD.NAME=VALUE", help="An option of a method; repeatable."),
+]
+LeftImage = Annotated[Path, typer.Argument(metavar="LEFT", help="The left image.")]
+RightImage = Annotated[Path, typer.Argument(metavar="RIGHT", help="The right image.")]
+RigFiles = Annotated[
+    list[str],
+    typer.Option(
+        metavar="CALIB",
+        help="The rig's calibration file or folder, or a rig's name; repeatable where files are several.",
+    ),
+]
+MaxAngle = Annotated[
+    float | None, typer.Option(help="The image circle: the lenses show nothing beyond this angle.")
+]
+Method = Annotated[str, typer.Option("--method", "-m", help="A method's name, or a file.")]
+MethodOptions = Annotated[
+    list[str] | None,
+    typer.Option("--option", metavar="NAME=VALUE", help="An option of the method; repeatable."),
+]
+MethodSeed = Annotated[int, typer.Option(help="Of the method's random choices.")]
+Unit = Annotated[
+    str | None,
+    typer.Option(help="What the calibration's translations are in, if not metres: mm, cm, in or ft."),
 ]
 
 
@@ -224,36 +249,91 @@ def render(
 
 @app.command()
 def rectify(
-    left: Annotated[Path, typer.Argument(metavar="LEFT", help="The left image.")],
-    right: Annotated[Path, typer.Argument(metavar="RIGHT", help="The right image.")],
-    rig: Annotated[str, typer.Option(metavar="CALIB", help="The rig's calibration file, or a rig's name.")],
+    left: LeftImage,
+    right: RightImage,
+    rig: RigFiles,
     out: Annotated[Path, typer.Option("--out", "-o", help="Folder for what is made.")] = Path("rectified"),
-    method: Annotated[
-        str, typer.Option("--method", "-m", help="A method's name, or a file.")
-    ] = "local-homography",
-    option: Annotated[
-        list[str] | None,
-        typer.Option("--option", metavar="NAME=VALUE", help="An option of the method; repeatable."),
-    ] = None,
-    seed: Annotated[int, typer.Option(help="Of the method's random choices.")] = 0,
-    max_angle_deg: Annotated[
-        float | None, typer.Option(help="The image circle: the lenses show nothing beyond this angle.")
-    ] = None,
+    method: Method = "local-homography",
+    option: MethodOptions = None,
+    seed: MethodSeed = 0,
+    max_angle_deg: MaxAngle = None,
+    unit: Unit = None,
 ) -> None:
     """Rectify an image pair: rectified images, masks, lookup tables and a preview with scan lines."""
-    from rectbench import api
-    from rectbench.bench.configuring import read_options
     from rectbench.bench.rectified_files import write_rectified
-    from rectbench.rendering.images import StereoPair
+
+    pair, rectification = _rectified(left, right, rig, method, option, seed, max_angle_deg, unit)
+    for file in write_rectified(rectification, pair, out):
+        print(file)
+
+
+@app.command()
+def pose(
+    left: LeftImage,
+    right: RightImage,
+    rig: RigFiles,
+    out: Annotated[
+        Path | None, typer.Option("--out", "-o", metavar="FILE", help="Write the rig in this pose as YAML.")
+    ] = None,
+    detector: Annotated[str, typer.Option(help="Of features: sift, akaze, orb or surf.")] = "sift",
+    seed: Annotated[int, typer.Option(help="Of the random samples.")] = 0,
+    max_angle_deg: MaxAngle = None,
+    unit: Unit = None,
+) -> None:
+    """Estimate from an image pair how the right camera stands to the left one.
+
+    The calibration gives the two lenses and the length of the baseline; its own pose is compared with
+    the estimate.
+    """
+    from rectbench import api, terminal
+    from rectbench.matching.images import read_images
     from rectbench.rigs import load_rig
 
-    pair = StereoPair.read(left, right)
-    calibrated = load_rig(rig, size=pair.left.shape[1::-1])
+    images = read_images(left, right)
+    calibrated = load_rig(rig[0] if len(rig) == 1 else rig, size=images.left.shape[1::-1], unit=unit)
     if max_angle_deg is not None:
         calibrated = calibrated.within(max_angle_deg)
-    options = read_options([f"method.{text}" for text in option or []]).get("method", {})
-    rectification = api.rectify(calibrated, method, images=pair, seed=seed, **options)
-    for file in write_rectified(rectification, pair, out):
+    estimate = api.estimate_pose(images, calibrated, detector=detector, seed=seed)
+    terminal.show_pose(estimate, calibrated)
+    if out is not None:
+        estimate.rig(calibrated).save(out)
+        print(out)
+
+
+@app.command()
+def reconstruct(
+    left: LeftImage,
+    right: RightImage,
+    rig: RigFiles,
+    out: Annotated[Path, typer.Option("--out", "-o", help="Folder for what is made.")] = Path(
+        "reconstructed"
+    ),
+    method: Method = "local-homography",
+    option: MethodOptions = None,
+    seed: MethodSeed = 0,
+    max_angle_deg: MaxAngle = None,
+    unit: Unit = None,
+    matcher: Annotated[
+        str, typer.Option(help="The dense matcher: sgbm, sgbm-5way, sgbm-8way or bm.")
+    ] = "sgbm",
+    nearest_baselines: Annotated[
+        float, typer.Option(help="Nothing nearer is sought, in multiples of the baseline.")
+    ] = 4.0,
+    pixels: Annotated[
+        float, typer.Option(help="A rectified image of more pixels is made smaller first.")
+    ] = 1e6,
+) -> None:
+    """Reconstruct an image pair in 3-D: a coloured point cloud, depth, disparity and a picture."""
+    from rectbench.matching import reconstruct
+    from rectbench.matching.matchers import matcher_named
+    from rectbench.reporting.reconstructed import write_reconstruction
+
+    matcher_named(matcher)  # a wrong name is told before the work begins
+    pair, rectification = _rectified(left, right, rig, method, option, seed, max_angle_deg, unit)
+    found = reconstruct(
+        rectification, pair.left, pair.right, matcher, pixels=pixels, nearest_baselines=nearest_baselines
+    )
+    for file in write_reconstruction(found, out):
         print(file)
 
 
@@ -302,6 +382,30 @@ def gc(
     print(
         f"{store.root}: {len(entries)} objects, {sum(entry.size_bytes for entry in entries) / 2**20:.0f} MiB"
     )
+
+
+def _rectified(
+    left: Path,
+    right: Path,
+    rig: list[str],
+    method: str,
+    option: list[str] | None,
+    seed: int,
+    max_angle_deg: float | None,
+    unit: str | None,
+) -> tuple[StereoPair, Rectification]:
+    """The images of two files, and the rectification of their rig."""
+    from rectbench import api
+    from rectbench.bench.configuring import read_options
+    from rectbench.rendering.images import StereoPair
+    from rectbench.rigs import load_rig
+
+    pair = StereoPair.read(left, right)
+    calibrated = load_rig(rig[0] if len(rig) == 1 else rig, size=pair.left.shape[1::-1], unit=unit)
+    if max_angle_deg is not None:
+        calibrated = calibrated.within(max_angle_deg)
+    options = read_options([f"method.{text}" for text in option or []]).get("method", {})
+    return pair, api.rectify(calibrated, method, images=pair, seed=seed, **options)
 
 
 def _split(names: list[str] | None) -> list[str] | None:

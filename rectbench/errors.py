@@ -32,6 +32,10 @@ class Unsupported(RectbenchError):
     """A rectifier that cannot serve this rig, with the geometric reason."""
 
 
+class PoseNotFound(Unsupported):
+    """Images or matches that do not determine how the two cameras stand, with the reason."""
+
+
 class Unavailable(RectbenchError):
     """Something the machine lacks: a library, a variant, a data file."""
 

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from rectbench.bench.conformance import Finding as CheckFinding
     from rectbench.bench.doctor import Finding
     from rectbench.bench.gating import Verdict
+    from rectbench.matching import PoseEstimate
+    from rectbench.rigs import Rig
 
 WIDE = 160
 """Columns assumed where the output is no terminal, so that a pipe gets whole lines."""
@@ -62,18 +64,19 @@ def show_names(kind: str, verbose: bool) -> None:
 
 
 def _described(kind: str) -> list[tuple[str, str]]:
-    from rectbench.rigs import MOTIONS, POSES, load_rig, rig_names
+    from rectbench.bench.report_spec import ESTIMATED
+    from rectbench.rigs import MOTIONS, POSES, calibration_formats, load_rig, rig_names
 
     if kind == "motions":
         return [(motion.name, motion.description) for motion in MOTIONS.values()]
     if kind == "poses":
-        return [
-            (
-                name,
-                f"rotation off by {noise.rotation_deg:g}°, baseline by {noise.direction_deg:g}°",
-            )
+        noises = [
+            (name, f"rotation off by {noise.rotation_deg:g}°, baseline by {noise.direction_deg:g}°")
             for name, noise in POSES.items()
         ]
+        return [*noises, (ESTIMATED, "found in the images: features, five points, bundle adjustment")]
+    if kind == "formats":
+        return list(calibration_formats().items())
     rigs = [(name, load_rig(name)) for name in rig_names()]
     return [
         (name, f"{r.left.model}, {r.left.width}x{r.left.height}, baseline {1000 * r.baseline_m:.0f} mm")
@@ -163,6 +166,30 @@ def show_comparison(comparison: Comparison, metrics: list[str] | None) -> None:
         screen.print(Text(line, style="yellow"), soft_wrap=True)
     if len(comparison.unpaired) > SHOWN_DIFFERENCES:
         screen.print(f"... and {len(comparison.unpaired) - SHOWN_DIFFERENCES} more cells in one run alone")
+
+
+def show_pose(estimate: PoseEstimate, rig: Rig) -> None:
+    """An estimated pose, how sure it is, and how far the calibration's own is from it."""
+    screen, table = console(), Table(box=None, pad_edge=False, show_header=False)
+    rotation_deg, direction_deg = estimate.difference_deg(rig)
+    (a, b, c), (x, y, z) = estimate.rotation_vector_deg, estimate.direction_right_left
+    found, seconds = len(estimate.inliers.left), estimate.seconds
+    for name, value, remark in (
+        ("rotation", f"({a:+.3f}, {b:+.3f}, {c:+.3f})°", f"± {estimate.rotation_sigma_deg:.3f}°"),
+        ("direction", f"({x:+.4f}, {y:+.4f}, {z:+.4f})", f"± {estimate.direction_sigma_deg:.3f}°"),
+        ("motion", estimate.motion, ""),
+        ("matches", f"{found} of {estimate.given} fit", f"noise {estimate.noise_px:.2f} px a coordinate"),
+        ("calibration", f"rotation {rotation_deg:.3f}° off", f"direction {direction_deg:.3f}° off"),
+        (
+            "time",
+            f"{sum(seconds.values()):.2f} s",
+            ", ".join(f"{stage} {took:.2f}" for stage, took in seconds.items()),
+        ),
+    ):
+        table.add_row(name, value, remark)
+    screen.print(table)
+    if estimate.note:
+        screen.print(Text(f"warning: {estimate.note}", style="yellow"), soft_wrap=True)
 
 
 def show_checks(method: str, findings: Iterable[CheckFinding]) -> int:

@@ -12,15 +12,32 @@ from typing import TypeVar
 
 import numpy as np
 
+from rectbench.bench.estimating import estimate_from_images, estimated_pose, pose_columns
 from rectbench.bench.features import scored_features
 from rectbench.bench.keys import Inputs, code_digest, derived_seed, versions
 from rectbench.bench.outcomes import LASTING, Outcome, outcome_of
-from rectbench.bench.pairs import image_inputs, load_images, load_truth, make_pair, placed_rig, truth_inputs
+from rectbench.bench.pairs import (
+    give_memory_back,
+    image_inputs,
+    load_images,
+    load_truth,
+    make_pair,
+    placed_rig,
+    truth_inputs,
+)
 from rectbench.bench.planning import CellTask, PairTask
 from rectbench.bench.plugins import registry
 from rectbench.bench.rectifying import check_result, checked_options, fit
+from rectbench.bench.report_spec import ESTIMATED, IMAGE_METRICS
 from rectbench.bench.store import Store
-from rectbench.metrics import measure
+from rectbench.matching import reconstruct
+from rectbench.metrics import (
+    Jacobians,
+    distortion_columns,
+    energy_convex_share,
+    measure,
+    reconstruction_scores,
+)
 from rectbench.rendering.truth import Truth
 from rectbench.rigs import Rig
 from rectbench.rigs.poses import POSES, perturb
@@ -60,7 +77,7 @@ def cell_inputs(task: CellTask) -> Inputs:
 
 def _uses_images(task: CellTask) -> bool:
     needs = registry("methods").get(task.method_source).value.needs
-    return "images" in needs or "row_error_features" in task.metrics
+    return "images" in needs or task.cell.pose == ESTIMATED or not IMAGE_METRICS.isdisjoint(task.metrics)
 
 
 def stored_outcome(task: CellTask, store: Store) -> Outcome | None:
@@ -79,6 +96,7 @@ def run_cell(task: CellTask, store_root: Path) -> Outcome:
     except BaseException as error:  # a plugin may raise anything, SystemExit and KeyboardInterrupt too
         outcome = outcome_of(error)
     keep(task, outcome, store)
+    give_memory_back()
     return outcome
 
 
@@ -98,9 +116,14 @@ def run_pair(pair: PairTask, store_root: Path) -> Outcome:
     return Outcome()
 
 
-def believed_rig(task: CellTask) -> Rig:
-    """What the rectifier is told: the true rig, its pose off by the noise of the cell's pose level."""
+def believed_rig(task: CellTask, store: Store) -> Rig:
+    """What the rectifier is told: the true rig with its pose perturbed, or estimated from the images.
+
+    Images do not tell how long a baseline is: the true length stands in an estimated rig, too.
+    """
     cell, rig = task.cell, placed_rig(task.pair)
+    if cell.pose == ESTIMATED:
+        return estimated_pose(task.pair, store).rig(rig)
     # Not named after the method: all methods of a pair are misled in the same way.
     seed = derived_seed("pose", cell.scene, cell.rig, cell.motion, cell.pose, cell.seed)
     return perturb(rig, POSES[cell.pose], seed)
@@ -111,15 +134,18 @@ def problem_of(task: CellTask, store: Store) -> Problem:
     cell, needs = task.cell, registry("methods").get(task.method_source).value.needs
     images = load_images(task.pair, store) if "images" in needs else None
     return pose_problem(
-        believed_rig(task),
-        matches=_noisy_matches(task, store) if "matches" in needs else None,
+        believed_rig(task, store),
+        matches=_given_matches(task, store) if "matches" in needs else None,
         images=Images(images.left, images.right) if images else None,
         seed=derived_seed("method", cell.scene, cell.rig, cell.motion, cell.pose, cell.method, cell.seed),
     )
 
 
-def _noisy_matches(task: CellTask, store: Store) -> Matches:
+def _given_matches(task: CellTask, store: Store) -> Matches:
+    """What a method that works from matches gets: those of the estimate, else true ones with noise."""
     cell = task.cell
+    if cell.pose == ESTIMATED:
+        return estimated_pose(task.pair, store).inliers
     seed = derived_seed("matches", cell.scene, cell.rig, cell.motion, cell.seed)
     truth = _truth(task.pair, store)
     return Matches(*truth.matches(task.match_count, seed=seed, noise_px=task.match_noise_px))
@@ -153,18 +179,39 @@ def _measured(task: CellTask, store: Store) -> Outcome:
     columns |= _scores(task, rectification, store)
     if "timing" in task.metrics:
         columns |= _warp_times(rectification)
+        if task.cell.pose == ESTIMATED:
+            columns["pose_s"] = _pose_time(task.pair, store)
+            columns["total_s"] = columns["pose_s"] + columns["fit_s"] + columns["warp_s"]
     return Outcome(metrics=columns, notes=dict(rectification.notes))
 
 
 def _scores(task: CellTask, rectification: Rectification, store: Store) -> dict[str, float]:
-    true_matches = feature_matches = None
-    if "row_error" in task.metrics:
-        true_matches = _true_matches(task.pair, store)
-    if "row_error_features" in task.metrics:
-        feature_matches = _feature_matches(task.pair, store)
-    return measure(
-        rectification, placed_rig(task.pair), true_matches=true_matches, feature_matches=feature_matches
+    pair, asked = task.pair, task.metrics
+    rig = placed_rig(pair)
+    columns = measure(
+        rectification,
+        rig,
+        geometry="geometry" in asked,
+        true_matches=_true_matches(pair, store) if "row_error" in asked else None,
+        feature_matches=_feature_matches(pair, store) if "row_error_features" in asked else None,
     )
+    if "distortion" in asked:
+        columns |= distortion_columns(Jacobians.at(rectification))
+    if task.cell.pose == ESTIMATED:
+        columns |= pose_columns(estimated_pose(pair, store), rig)
+    if "energy" in asked:
+        columns["energy_convex_share"] = energy_convex_share(rectification)
+    if "reconstruction" in asked:
+        images = load_images(pair, store)
+        found = reconstruct(rectification, images.left, images.right)
+        columns |= reconstruction_scores(found, _truth(pair, store))
+    return columns
+
+
+@lru_cache(maxsize=1)
+def _pose_time(pair: PairTask, store: Store) -> float:
+    """Seconds from the two images to the pose."""
+    return timed(lambda: estimate_from_images(pair, store))[1]
 
 
 def _warp_times(rectification: Rectification) -> dict[str, float]:

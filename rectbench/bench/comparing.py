@@ -11,7 +11,7 @@ import pandas as pd
 from scipy.stats import bootstrap
 
 from rectbench.bench.gating import KEY
-from rectbench.bench.run_folder import LEADING, read_results
+from rectbench.bench.run_folder import LEADING, TEXTS, read_results
 from rectbench.cameras.arrays import FloatArray
 
 CONFIDENCE = 0.95
@@ -41,7 +41,7 @@ def compare(a: Path, b: Path) -> Comparison:
     metrics = [
         name.removesuffix("_a")
         for name in both.columns
-        if name.endswith("_a") and f"{name[:-2]}_b" in both and name[:-2] not in (*LEADING, "notes")
+        if name.endswith("_a") and f"{name[:-2]}_b" in both and name[:-2] not in (*LEADING, *TEXTS)
     ]
     rows = [
         {"method": method, "metric": metric, **_difference(cells[f"{metric}_a"], cells[f"{metric}_b"])}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rectbench.matching import sift_matches
+from rectbench.matching import match_features
 from rectbench.rendering.images import StereoPair
 from rectbench.rigs import Rig
 from rectbench.warps import Matches, centre_resolution_px
@@ -13,13 +13,17 @@ FARTHEST_PX = 3.0
 """A match farther from its true epipolar plane is a wrong match, not an imprecise one."""
 
 
+WORKING_PIXELS = 2_100_000
+"""Features of a larger image are found at this size: of a film camera's image they would take gigabytes."""
+
+
 def scored_features(images: StereoPair, rig: Rig) -> Matches:
     """SIFT matches [N, 2] each within 3 px of the true rig's epipolar planes.
 
     The distance is the angle between the right ray and the plane of the left one, times the pixels
     per radian at the centre. A rectifier never sees these matches.
     """
-    found = sift_matches(images.left, images.right)
+    found = match_features(images.left, images.right, working_pixels=WORKING_PIXELS)
     rays_left, ok_left = rig.left.unproject(found.left)
     rays_right, ok_right = rig.right.unproject(found.right)
     normals = rays_left @ rig.essential_matrix.T

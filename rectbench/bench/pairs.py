@@ -106,7 +106,7 @@ def make_pair(pair: PairTask, store: Store) -> None:
         images = pair.images and store.read(IMAGES, image_inputs(pair)) is None
         if truth or images:
             _render(pair, store, truth=truth, images=images)
-            _give_memory_back()
+            give_memory_back()
 
 
 def load_truth(pair: PairTask, store: Store) -> Truth:
@@ -134,18 +134,17 @@ def _render(pair: PairTask, store: Store, *, truth: bool, images: bool) -> None:
     stage, rig = set_stage(pair.scene_source, pair.seed, pair.quality), placed_rig(pair)
     if truth:
         exact = stage.survey(rig)
-        store.write(TRUTH, truth_inputs(pair), lambda folder: exact.save(folder / "truth.npz"))
+        store.write(TRUTH, truth_inputs(pair), lambda folder: exact.save(folder / "truth.npz", derived=False))
     if images:
         noise = render_seed(pair.scene, pair.rig, pair.motion, pair.seed)
         rendered = stage.photograph(rig, seed=noise, spp=pair.spp)
         store.write(IMAGES, image_inputs(pair), rendered.save)
 
 
-def _give_memory_back() -> None:
-    """Return what rendering held: two workers that each keep their peak would need 3 GB for nothing."""
-    import drjit
-
-    drjit.flush_malloc_cache()
+def give_memory_back() -> None:
+    """Return to the system what was freed: two workers that each keep their peak hold gigabytes idle."""
+    if drjit := sys.modules.get("drjit"):
+        drjit.flush_malloc_cache()
     if sys.platform == "linux":
         with suppress(AttributeError):  # a C library without it
             ctypes.CDLL(None).malloc_trim(0)

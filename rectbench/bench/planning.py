@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 from rectbench.bench.keys import canonical_json
 from rectbench.bench.plugins import Plugin, is_path, registry
 from rectbench.bench.rectifying import checked_options
-from rectbench.bench.report_spec import Report
+from rectbench.bench.report_spec import ESTIMATED, Group, PairName, Report
 from rectbench.errors import InvalidInput, UnknownName
 from rectbench.rigs import load_rig, rig_names
 from rectbench.rigs.motions import MOTIONS
@@ -67,6 +67,10 @@ class CellTask:
     metrics: tuple[str, ...]
     match_count: int
     match_noise_px: float
+    group: str = ""
+    """The part of the report it belongs to."""
+    alone: bool = False
+    """Whether it runs with the machine to itself."""
 
     def to_json(self) -> dict[str, Any]:
         """As JSON values."""
@@ -108,11 +112,10 @@ class Plan:
     @property
     def is_whole(self) -> bool:
         """Whether every cell of the report is in the plan."""
-        dimensions = ("methods", "scenes", "rigs", "seeds")
+        own = {**self.report.own_names, "seeds": self.report.all_seeds}
         return not self.selection.options and all(
-            set(getattr(self.report, name))
-            <= set(chosen_names(getattr(self.selection, name), getattr(self.report, name)))
-            for name in dimensions
+            set(names) <= set(chosen_names(getattr(self.selection, dimension), names))
+            for dimension, names in own.items()
         )
 
     @property
@@ -147,54 +150,107 @@ def make_plan(report: Report, selection: Selection | None = None) -> Plan:
     on the report's pairs. Raises UnknownName or InvalidInput for a name or option that does not exist.
     """
     chosen = selection or Selection()
-    methods = _plugins("methods", chosen.methods, report.methods)
-    scenes = _plugins("scenes", chosen.scenes, report.scenes)
-    rigs = _rigs(chosen.rigs, report.rigs)
-    _require_known("motion", report.motions, MOTIONS)
-    _require_known("pose", report.poses, POSES)
-    option_sets = _option_sets(report, chosen, [plugin for plugin, _ in methods])
-    images = report.needs_images or any("images" in plugin.value.needs for plugin, _ in methods)
-    truth = "row_error" in report.metrics or any("matches" in plugin.value.needs for plugin, _ in methods)
-    tasks = []
-    for (scene, scene_source), (rig, rig_source), motion, seed in itertools.product(
-        scenes, rigs.items(), report.motions, _seeds(chosen.seeds, report.seeds)
-    ):
+    _require_known("pose", report.poses, (*POSES, ESTIMATED))
+    tasks: dict[Cell, CellTask] = {}
+    for part in report.parts:
+        for task in _tasks_of(part, report, chosen):
+            rival = tasks.setdefault(task.cell, task)
+            if rival is not task:
+                cell = f"{task.cell.method} on {task.cell.scene}, {task.cell.rig}"
+                raise InvalidInput(f"{cell} stands in two groups, {rival.group} and {part.name}")
+    if not tasks:
+        raise InvalidInput(f"no cell of report {report.name} is selected; expected some of its names")
+    _check_option_names(report, chosen, {cell.method for cell in tasks})
+    return Plan(report, chosen, tuple(_sharing_pairs(tasks.values())))
+
+
+def _tasks_of(part: Group, report: Report, chosen: Selection) -> Iterator[CellTask]:
+    """The cells of one part of a report, pair by pair."""
+    names = _chosen_methods(part, report, chosen)
+    if not names:
+        return
+    methods = _plugins("methods", names)
+    option_sets = _option_sets({**report.options, **part.options}, chosen, [plugin for plugin, _ in methods])
+    needs = frozenset().union(*(plugin.value.needs for plugin, _ in methods))
+    pairs = _chosen_pairs(part, report, chosen)
+    scenes = {name: _plugins("scenes", [name])[0] for name in dict.fromkeys(scene for scene, _, _ in pairs)}
+    rigs = _rigs(dict.fromkeys(rig for _, rig, _ in pairs))
+    _require_known("motion", [motion for _, _, motion in pairs], MOTIONS)
+    for (scene, rig, motion), seed in itertools.product(pairs, _chosen_seeds(part, report, chosen)):
+        plugin, scene_source = scenes[scene]
+        rig_name, rig_source = rigs[rig]
         pair = PairTask(
-            scene=scene.name,
-            rig=rig,
+            scene=plugin.name,
+            rig=rig_name,
             motion=motion,
             seed=seed,
             scene_source=scene_source,
             rig_source=rig_source,
-            image_width=report.image_width,
+            image_width=report.image_width_of(part),
             quality=report.quality,
             spp=report.spp,
-            truth=truth,
-            images=images,
+            truth=report.needs_truth(part) or "matches" in needs,
+            images=report.needs_images(part) or "images" in needs,
         )
         for pose, (method, method_source) in itertools.product(report.poses, methods):
-            tasks += [
-                CellTask(
-                    cell=Cell(
-                        report.name, scene.name, rig, motion, pose, method.name, canonical_json(options), seed
-                    ),
+            for options in option_sets[method.name]:
+                identity = (pair.scene, pair.rig, motion, pose, method.name, canonical_json(options), seed)
+                yield CellTask(
+                    cell=Cell(report.name, *identity),
                     pair=pair,
                     method_source=method_source,
                     options=options,
-                    metrics=report.metrics,
+                    metrics=report.metrics_of(part),
                     match_count=report.match_count,
                     match_noise_px=report.match_noise_px,
+                    group=part.name,
+                    alone=part.alone,
                 )
-                for options in option_sets[method.name]
-            ]
-    return Plan(report, chosen, tuple(tasks))
 
 
-def _plugins(kind: Any, chosen: Sequence[str] | None, own: Sequence[str]) -> list[tuple[Plugin, str]]:
+def _sharing_pairs(tasks: Collection[CellTask]) -> Iterator[CellTask]:
+    """The tasks, those of different parts on one pair sharing one task for it, so that it is made once."""
+    wanted: dict[PairTask, PairTask] = {}
+    for pair in (task.pair for task in tasks):
+        bare = replace(pair, truth=False, images=False)
+        known = wanted.get(bare, bare)
+        wanted[bare] = replace(bare, truth=pair.truth or known.truth, images=pair.images or known.images)
+    for task in tasks:
+        yield replace(task, pair=wanted[replace(task.pair, truth=False, images=False)])
+
+
+def _chosen_methods(part: Group, report: Report, chosen: Selection) -> list[str]:
+    """The methods of a part that a run is to have: its own, and those that no part has."""
+    own = report.own_names["methods"]
+    names = chosen_names(chosen.methods, own)
+    foreign = [name for name in names if name not in own]
+    return [*(name for name in part.methods if name in names), *(foreign if part.is_open else ())]
+
+
+def _chosen_pairs(part: Group, report: Report, chosen: Selection) -> list[PairName]:
+    """The pairs of a part that a run is to have, in the part's order."""
+    pairs = list(part.pairs)
+    for place, kind in enumerate(("scenes", "rigs")):
+        own = report.own_names[kind]
+        names = chosen_names(getattr(chosen, kind), own)
+        if not names:
+            raise InvalidInput(f"no {kind} are selected; expected at least one")
+        foreign = [name for name in names if name not in own]
+        kept = [pair for pair in pairs if pair[place] in names]
+        # A name of the user's own takes the place of each of the part's.
+        added = [_with(pair, place, name) for pair in pairs for name in foreign]
+        pairs = list(dict.fromkeys([*kept, *added]))
+    return pairs
+
+
+def _with(pair: PairName, place: int, name: str) -> PairName:
+    scene, rig, motion = (name if i == place else own for i, own in enumerate(pair))
+    return scene, rig, motion
+
+
+def _plugins(kind: Any, names: Sequence[str]) -> list[tuple[Plugin, str]]:
     """Each plugin with what it is found by in another process: its name, or its absolute path."""
-    found = [(registry(kind).get(name), _source(name)) for name in chosen_names(chosen, own)]
-    if not found:
-        raise InvalidInput(f"no {kind} are selected; expected at least one")
+    found = [(registry(kind).get(name), _source(name)) for name in names]
     by_name: dict[str, tuple[Plugin, str]] = {}
     for plugin, source in found:
         rival, _ = by_name.setdefault(plugin.name, (plugin, source))
@@ -203,18 +259,17 @@ def _plugins(kind: Any, chosen: Sequence[str] | None, own: Sequence[str]) -> lis
     return list(by_name.values())
 
 
-def _rigs(chosen: Sequence[str] | None, own: Sequence[str]) -> dict[str, str]:
-    """Where each rig is found, by the rig's name."""
-    names = chosen_names(chosen, own)
-    if not names:
-        raise InvalidInput("no rigs are selected; expected at least one")
+def _rigs(names: Iterable[str]) -> dict[str, tuple[str, str]]:
+    """By what each rig is asked for: its name, and where another process finds it."""
+    rigs: dict[str, tuple[str, str]] = {}
     sources: dict[str, str] = {}
     for name in names:
         rig = load_rig(name).name
         source = name if name in rig_names() else str(Path(name).resolve())
         if sources.setdefault(rig, source) != source:
             raise InvalidInput(f"two rigs are called '{rig}': {sources[rig]} and {source}")
-    return sources
+        rigs[name] = rig, source
+    return rigs
 
 
 def _source(name: str | Path) -> str:
@@ -222,14 +277,16 @@ def _source(name: str | Path) -> str:
     return str(Path(name).resolve()) if is_path(name) else str(name)
 
 
-def _seeds(chosen: Sequence[int] | None, own: Sequence[int]) -> tuple[int, ...]:
-    seeds = chosen_names(chosen, own)
+def _chosen_seeds(part: Group, report: Report, chosen: Selection) -> tuple[int, ...]:
+    """The seeds of a part that a run is to have: its own, and those that no part has."""
+    seeds = chosen_names(chosen.seeds, report.all_seeds)
     for seed in seeds:
         if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
             raise InvalidInput(f"seed is {seed!r}; expected a whole number from 0 on")
     if not seeds:
         raise InvalidInput("no seeds are selected; expected at least one")
-    return tuple(dict.fromkeys(seeds))
+    own, foreign = report.seeds_of(part), set(seeds) - set(report.all_seeds)
+    return tuple(dict.fromkeys(seed for seed in seeds if seed in own or seed in foreign))
 
 
 def _require_known(kind: str, names: Iterable[str], known: Iterable[str]) -> None:
@@ -238,16 +295,22 @@ def _require_known(kind: str, names: Iterable[str], known: Iterable[str]) -> Non
             raise UnknownName(kind, name, known)
 
 
-def _option_sets(report: Report, chosen: Selection, methods: list[Plugin]) -> dict[str, list[dict[str, Any]]]:
-    """The sets of options each method runs with, checked; the default ones where none are given."""
-    for name in {**report.options, **chosen.options}:
-        # An option for a method that is left out of this run may stand; one for no method is a slip.
-        if name not in {plugin.name for plugin in methods}:
+def _check_option_names(report: Report, chosen: Selection, methods: set[str]) -> None:
+    """An option for a method that is left out of this run may stand; one for no method is a slip."""
+    stated = [name for part in report.parts for name in part.options]
+    for name in dict.fromkeys((*report.options, *stated, *chosen.options)):
+        if name not in methods:
             registry("methods").get(name)
+
+
+def _option_sets(
+    own: Mapping[str, tuple[dict[str, Any], ...]], chosen: Selection, methods: list[Plugin]
+) -> dict[str, list[dict[str, Any]]]:
+    """The sets of options each method runs with, checked; the default ones where none are given."""
     sets = {}
     for plugin in methods:
         overlaid = chosen.options.get(plugin.name, {})
-        given = [{**own, **overlaid} for own in report.options.get(plugin.name, ({},))]
+        given = [{**options, **overlaid} for options in own.get(plugin.name, ({},))]
         for options in given:
             checked_options(plugin, options)
         sets[plugin.name] = [options for i, options in enumerate(given) if options not in given[:i]]

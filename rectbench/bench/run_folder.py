@@ -22,6 +22,8 @@ from rectbench.errors import InvalidInput, Unavailable
 
 RUN_FILE, PARQUET, CSV = "run.json", "results.parquet", "results.csv"
 LEADING = (*IDENTITY, "status", "reason")
+TEXTS = ("group", "notes")
+"""Columns that are neither identity nor metric: the part of the report, what the method says of itself."""
 PACKAGES = (
     "rectbench",
     "numpy",
@@ -62,10 +64,10 @@ def table_of(plan: Plan, outcomes: Sequence[Outcome]) -> pd.DataFrame:
     for task, outcome in zip(plan.tasks, outcomes, strict=True):
         ended = {"status": outcome.status, "reason": outcome.reason}
         notes = json.dumps(dict(outcome.notes), sort_keys=True, default=str)
-        rows.append({**asdict(task.cell), **ended, **outcome.metrics, "notes": notes})
+        rows.append({**asdict(task.cell), **ended, "group": task.group, **outcome.metrics, "notes": notes})
     measured = dict.fromkeys(name for outcome in outcomes for name in outcome.metrics)
     metrics = [*PROMISED, *(name for name in measured if name not in PROMISED)]
-    table = pd.DataFrame(rows, columns=[*LEADING, *metrics, "notes"])
+    table = pd.DataFrame(rows, columns=[*LEADING, "group", *metrics, "notes"])
     return table.astype({**dict.fromkeys(metrics, "float64"), "seed": "int64"})
 
 

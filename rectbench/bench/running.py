@@ -133,29 +133,32 @@ class _Runner:
                 self._run_on_cluster(dask, found)
             else:
                 with Workers(self.jobs, self.limits) as workers:
-                    self._run_locally(workers, found)
+                    self._make_pairs(workers, found)
+                    self._run_cells(workers, found, alone=False)
+                with Workers(1, replace(self.limits, threads=self.jobs * self.limits.threads)) as worker:
+                    self._run_cells(worker, found, alone=True)
         except KeyboardInterrupt:
             done = sum(outcome is not None for outcome in found)
             raise Interrupted(done, len(tasks)) from None
         return [outcome for outcome in found if outcome is not None]
 
-    def _run_locally(self, workers: Workers, found: list[Outcome | None]) -> None:
-        failed = self._make_pairs(workers, found)
-        for index, task in enumerate(self.plan.tasks):
-            if found[index] is None and task.pair in failed:
-                pair = failed[task.pair]
-                found[index] = replace(pair, reason=f"rendering the pair: {pair.reason}")
-        missing = [index for index, outcome in enumerate(found) if outcome is None]
-        jobs = [self._cell_job(self.plan.tasks[index]) for index in missing]
-        with self.progress.stage("cells", len(found)) as advance:
-            for _ in range(len(found) - len(missing)):
+    def _run_cells(self, workers: Workers, found: list[Outcome | None], *, alone: bool) -> None:
+        """Run those cells without an outcome that are to run alone, or those that need not."""
+        tasks = self.plan.tasks
+        missing = [i for i, outcome in enumerate(found) if outcome is None and tasks[i].alone == alone]
+        if alone and not missing:
+            return
+        done = sum(outcome is not None for outcome in found)
+        stage = "cells, one at a time" if alone else "cells"
+        with self.progress.stage(stage, done + len(missing)) as advance:
+            for _ in range(done):
                 advance()
-            for position, outcome in workers.run(jobs):
+            for position, outcome in workers.run([self._cell_job(tasks[index]) for index in missing]):
                 found[missing[position]] = outcome
                 advance()
 
-    def _make_pairs(self, workers: Workers, found: list[Outcome | None]) -> dict[PairTask, Outcome]:
-        """Render the pairs the store lacks; returns how those ended that could not be made."""
+    def _make_pairs(self, workers: Workers, found: list[Outcome | None]) -> None:
+        """Render the pairs the store lacks; the cells of one that cannot be made end as it did."""
         # A pair with images is made even if its rows are all known: the report's pictures show it.
         wanted = dict.fromkeys(
             task.pair
@@ -163,14 +166,18 @@ class _Runner:
             if outcome is None or task.pair.images
         )
         missing = [pair for pair in wanted if not is_made(pair, self.store)]
+        if not missing:
+            return
         failed = {}
-        if missing:
-            with self.progress.stage("rendering", len(missing)) as advance:
-                for position, outcome in workers.run([self._pair_job(pair) for pair in missing]):
-                    if not outcome.ok:
-                        failed[missing[position]] = outcome
-                    advance()
-        return failed
+        with self.progress.stage("rendering", len(missing)) as advance:
+            for position, outcome in workers.run([self._pair_job(pair) for pair in missing]):
+                if not outcome.ok:
+                    failed[missing[position]] = outcome
+                advance()
+        for index, task in enumerate(self.plan.tasks):
+            if found[index] is None and task.pair in failed:
+                pair = failed[task.pair]
+                found[index] = replace(pair, reason=f"rendering the pair: {pair.reason}")
 
     def _pair_job(self, pair: PairTask) -> Job:
         arguments = (pair, self.store.root)

@@ -12,17 +12,15 @@ from functools import lru_cache
 from types import SimpleNamespace
 from typing import Any
 
-import numpy as np
 from numpy.polynomial import Polynomial
 
-from rectbench.cameras.arrays import NUMPY, JetNamespace, as_jets, variables
 from rectbench.cameras.domain import FARTHEST, LEAST_SLOPE, first_root
 from rectbench.cameras.inversion import invert_in_disk
+from rectbench.cameras.monotone import edge_of_disk, monotone_radius
 
 COEFFICIENTS = ("k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6", "s1", "s2", "s3", "s4")
 STEEPEST = 1e5
 """Slope at which a rational distortion ends on its way to a pole, hundreds of focal lengths out."""
-DIRECTIONS = np.linspace(0.0, 2.0 * math.pi, 180)
 RADIAL = ("k1", "k2", "k3", "k4", "k5", "k6")
 
 
@@ -52,22 +50,10 @@ def edge(
     the distorted radius stops rising; without distortion there is no such radius. `slope_before` is
     the slope, at a radius, of a step before this one: the two together keep above `LEAST_SLOPE`.
     """
-
-    def steep(radius: float) -> bool:
-        own = float(_least_eigenvalue(p, radius, DIRECTIONS).min())
-        return own * slope_before(radius) >= 0.99 * LEAST_SLOPE
-
     radius = min(radius, _monotone_radius(*(getattr(p, name) for name in COEFFICIENTS)))
     if math.isinf(radius):
         return {"max_radius": radius, "reach": radius}
-    if not steep(radius):
-        low, high = 0.0, radius
-        while high - low > 1e-9 * high:
-            middle = 0.5 * (low + high)
-            low, high = (middle, high) if steep(middle) else (low, middle)
-        radius = low
-    image = distorted(p, radius * np.cos(DIRECTIONS), radius * np.sin(DIRECTIONS), NUMPY)
-    return {"max_radius": radius, "reach": 1.01 * float(np.hypot(*image).max())}
+    return edge_of_disk(distorted, p, radius, slope_before)
 
 
 @lru_cache
@@ -78,19 +64,7 @@ def _monotone_radius(*coefficients: float) -> float:
     radius = min(FARTHEST, _radial_fold(c))
     if all(getattr(c, name) == 0 for name in COEFFICIENTS if name not in RADIAL):
         return radius
-    # Angles instead of radii, as a step in radius means less the farther out it is taken; and ever
-    # finer about the direction that folds first.
-    low, high, direction, reach = 0.0, math.atan(radius), 0.0, math.pi
-    for _ in range(5):
-        angles = np.linspace(low, high, 64)
-        directions = direction + np.linspace(-reach, reach, 180)
-        least = _least_eigenvalue(c, np.tan(angles)[:, None], directions)
-        falling = np.flatnonzero(~(least.min(axis=1) >= LEAST_SLOPE))
-        if not falling.size:
-            return math.tan(high)
-        low, high = angles[max(falling[0] - 2, 0)], angles[falling[0]]
-        direction, reach = directions[least[falling[0]].argmin()], reach / 20.0
-    return math.tan(low)
+    return monotone_radius(distorted, c, radius)
 
 
 def _radial_fold(c: SimpleNamespace) -> float:
@@ -102,11 +76,3 @@ def _radial_fold(c: SimpleNamespace) -> float:
     if first_root(under) < math.inf:
         squares.append(first_root(slope - STEEPEST * under**2))
     return math.sqrt(min(squares))
-
-
-def _least_eigenvalue(c: SimpleNamespace, radius: Any, direction: Any) -> Any:
-    """Least eigenvalue of the symmetric part of the Jacobian at points in polar coordinates."""
-    a, b = radius * np.cos(direction), radius * np.sin(direction)
-    p, q = distorted(as_jets(c), *variables(a, b), JetNamespace(NUMPY))
-    (pa, pb), (qa, qb) = p.partials, q.partials
-    return 0.5 * (pa + qb) - np.hypot(0.5 * (pa - qb), 0.5 * (pb + qa))

@@ -19,9 +19,10 @@ AXIS_SINE = 1e-12
 class Lens(ABC):
     """One projection model: stateless formulas; the camera holds the numbers.
 
-    Rays go to a point (mx, my) of the lens plane and from there to pixels by u = fx mx + cx,
-    v = fy my + cy; a subclass states the first step and its inverse. `derive` computes, once a
-    camera, what the formulas need beyond the parameters, foremost the edge of the valid domain.
+    Rays go to a point (mx, my) of the lens plane and from there to pixels by u = fx mx + skew my + cx,
+    v = fy my + cy, where most models have no `skew`; a subclass states the first step and its
+    inverse. `derive` computes, once a camera, what the formulas need beyond the parameters, foremost
+    the edge of the valid domain.
     """
 
     name: ClassVar[str]
@@ -44,11 +45,14 @@ class Lens(ABC):
 
     def to_pixel(self, c: Any, mx: Any, my: Any) -> tuple[Any, Any]:
         """Pixel (u, v) of the lens plane point (mx, my)."""
-        return c.fx * mx + c.cx, c.fy * my + c.cy
+        u = c.fx * mx + c.cx
+        return (u + c.skew * my if "skew" in self.parameters else u), c.fy * my + c.cy
 
     def from_pixel(self, c: Any, u: Any, v: Any) -> tuple[Any, Any]:
         """Lens plane point (mx, my) of the pixel (u, v)."""
-        return (u - c.cx) / c.fx, (v - c.cy) / c.fy
+        my = (v - c.cy) / c.fy
+        u = u - c.cx
+        return (u - c.skew * my if "skew" in self.parameters else u) / c.fx, my
 
     def project(self, c: Any, x: Any, y: Any, z: Any, xp: Any) -> tuple[Any, Any, Any]:
         """Pixel (u, v) of the ray (x, y, z) of any length; whether the ray is in the domain."""
@@ -63,6 +67,7 @@ class Lens(ABC):
         """The parameters of the same lens on an image sx times as wide and sy times as high."""
         return {
             **params,
+            **({"skew": params["skew"] * sx} if "skew" in params else {}),
             "fx": params["fx"] * sx,
             "fy": params["fy"] * sy,
             "cx": (params["cx"] + 0.5) * sx - 0.5,

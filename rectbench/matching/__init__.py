@@ -1,6 +1,23 @@
 """Matches between images, and the geometry they determine."""
 
-from rectbench.matching.features import sift_matches
+from rectbench.matching.dense import Disparity, dense_disparity
+from rectbench.matching.features import match_features, sift_matches
 from rectbench.matching.fundamental import fundamental_matrix, sampson_residuals
+from rectbench.matching.matchers import MATCHERS
+from rectbench.matching.pose import PoseEstimate, pose_from_images, relative_pose
+from rectbench.matching.reconstruction import Reconstruction, reconstruct
 
-__all__ = ["fundamental_matrix", "sampson_residuals", "sift_matches"]
+__all__ = [
+    "MATCHERS",
+    "Disparity",
+    "PoseEstimate",
+    "Reconstruction",
+    "dense_disparity",
+    "fundamental_matrix",
+    "match_features",
+    "pose_from_images",
+    "reconstruct",
+    "relative_pose",
+    "sampson_residuals",
+    "sift_matches",
+]

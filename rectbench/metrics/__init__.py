@@ -2,11 +2,13 @@
 
 from rectbench.metrics.coverage import coverage, dense_pixels
 from rectbench.metrics.distortion import Distortion, distortion, distortion_of, log_distortion
+from rectbench.metrics.energy import energy_convex_share
 from rectbench.metrics.jacobians import Jacobians
 from rectbench.metrics.order import order
+from rectbench.metrics.reconstruction import reconstruction_scores
 from rectbench.metrics.rows import RowError, row_error
 from rectbench.metrics.sampling import every_pixel, per_pixel
-from rectbench.metrics.scoring import measure
+from rectbench.metrics.scoring import distortion_columns, measure
 
 __all__ = [
     "Distortion",
@@ -15,11 +17,14 @@ __all__ = [
     "coverage",
     "dense_pixels",
     "distortion",
+    "distortion_columns",
     "distortion_of",
+    "energy_convex_share",
     "every_pixel",
     "log_distortion",
     "measure",
     "order",
     "per_pixel",
+    "reconstruction_scores",
     "row_error",
 ]

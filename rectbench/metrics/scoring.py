@@ -16,6 +16,7 @@ def measure(
     rect: Rectification,
     rig: Rig,
     *,
+    geometry: bool = True,
     true_matches: Matches | None = None,
     feature_matches: Matches | None = None,
 ) -> dict[str, float]:
@@ -25,11 +26,10 @@ def measure(
     ----------
     rect : what the method made of the rig it believed in.
     rig : the true rig.
+    geometry : whether to score distortion, sampling, coverage and order, which need no match.
     true_matches : exact correspondences, unoccluded in both images.
     feature_matches : correspondences found in the images; scored apart.
     """
-    at_grid = Jacobians.at(rect)
-    scores = {protocol: distortion_of(at_grid, protocol) for protocol in PROTOCOLS}
     row: dict[str, float] = {}
     if true_matches is not None:
         row |= row_error(rect, *true_matches).columns()
@@ -37,11 +37,22 @@ def measure(
         features = row_error(rect, *feature_matches).columns()
         names = ("row_error_mean_px", "row_error_median_px", "row_error_matches")
         row |= {name.replace("row_error", "row_error_features"): features[name] for name in names}
-    row |= {f"distortion_{protocol}": float(score) for protocol, score in scores.items()}
-    row |= {
-        "distortion_native_median": scores["native"].median,
-        "distortion_native_p95": scores["native"].p95,
+    return row | _geometry(rect, rig) if geometry else row
+
+
+def _geometry(rect: Rectification, rig: Rig) -> dict[str, float]:
+    at_grid = Jacobians.at(rect)
+    native = distortion_of(at_grid, "native")
+    row = {
+        **distortion_columns(at_grid),
+        "distortion_native_median": native.median,
+        "distortion_native_p95": native.p95,
         "distortion_pixels_mapped": at_grid.valid_share,
     }
-    row |= {f"distortion_native_{term}": value for term, value in scores["native"].terms.items()}
+    row |= {f"distortion_native_{term}": value for term, value in native.terms.items()}
     return row | every_pixel(rect) | log_distortion(at_grid) | coverage(rect, rig) | order(rect, rig)
+
+
+def distortion_columns(at_grid: Jacobians) -> dict[str, float]:
+    """L under each protocol, the cheapest of the metrics."""
+    return {f"distortion_{protocol}": float(distortion_of(at_grid, protocol)) for protocol in PROTOCOLS}

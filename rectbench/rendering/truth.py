@@ -100,18 +100,28 @@ class Truth:
         chosen = _spread(u, v, self.rig.left.size, n, rng)
         u, v = u[chosen], v[chosen]
         px_left = np.stack([u, v], axis=-1).astype(np.float64)
-        points = _points(self.rig.left, px_left, self.depth_left[v, u])
-        px_right, _ = self.rig.right.project(self.rig.right_from_left(points))
+        px_right = self.right_pixels(u, v)
         if noise_px > 0:
             px_left = px_left + rng.normal(0.0, noise_px, px_left.shape)
             px_right = px_right + rng.normal(0.0, noise_px, px_right.shape)
         return px_left, px_right
 
-    def save(self, path: str | Path) -> None:
-        """Write an .npz: depth, points, correspondences (float32) and visibility of both, and the rig."""
-        arrays: dict[str, Any] = {
-            f"{name}_{side}": array for side, layers in self._layers() for name, array in layers.items()
-        }
+    def right_pixels(self, u: NDArray[np.integer[Any]], v: NDArray[np.integer[Any]]) -> FloatArray:
+        """Pixels [N, 2] of the right camera's plane where the points of left pixels (u, v) [N] lie."""
+        px_left = np.stack([u, v], axis=-1).astype(np.float64)
+        points = _points(self.rig.left, px_left, self.depth_left[v, u])
+        return self.rig.right.project(self.rig.right_from_left(points))[0]
+
+    def save(self, path: str | Path, *, derived: bool = True) -> None:
+        """Write an .npz: depth, points, correspondences (float32) and visibility of both, and the rig.
+
+        Without the `derived` points and correspondences, which `load` makes anew, it is a fifth as large.
+        """
+        arrays: dict[str, Any] = {}
+        for side in SIDES:
+            arrays |= {f"{name}_{side}": getattr(self, f"{name}_{side}") for name in ("depth", "visible")}
+        if derived:
+            arrays |= {f"{name}_{side}": a for side, layers in self._layers() for name, a in layers.items()}
         with Path(path).open("wb") as file:
             np.savez(file, rig=np.array(_rig_text(self.rig)), **arrays)
 

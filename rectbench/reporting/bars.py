@@ -1,14 +1,17 @@
-"""Grouped bars of one metric: a panel a rig, a group a scene, a bar a method."""
+"""Grouped bars: of one metric, a panel a rig and a group a scene; or a panel a metric and a group a pair."""
 
 from __future__ import annotations
 
 import math
+import re
+import textwrap
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import product
 from typing import TYPE_CHECKING
 
 from rectbench.reporting.columns import column
+from rectbench.reporting.labels import pair_labels
 from rectbench.reporting.run_folder import Result, Run
 from rectbench.reporting.style import COLUMN_INCHES, FAINT, INK, PAGE_INCHES, looks, plain_log_ticks
 
@@ -18,6 +21,7 @@ if TYPE_CHECKING:
 
 _LEAST_BAR_INCHES = 0.06
 _LABEL_BAR_INCHES = 0.075
+_LETTER_INCHES = 0.055
 _LOG_FROM = 20.0
 
 
@@ -40,6 +44,8 @@ class BarChart:
     reference: float | None
     methods: tuple[str, ...]
     panels: Mapping[str, Mapping[str, Mapping[str, Bar]]]
+    stated: Mapping[str, float] = field(default_factory=dict)
+    """Values that somebody else states, by group."""
 
 
 def bar_chart(run: Run, key: str, pose: str, reference: float | None = None) -> BarChart:
@@ -68,6 +74,43 @@ def bar_chart(run: Run, key: str, pose: str, reference: float | None = None) -> 
     return BarChart(shown_as.full_heading, shown_as.floor, reference, methods, panels)
 
 
+def pair_chart(
+    run: Run, label: str, titles: Mapping[str, str], pose: str, reference: float | None = None
+) -> BarChart:
+    """The bars of metrics of one kind side by side; `titles` names the panel of each column."""
+    labels = pair_labels(run)
+    results = run.select(pose=pose)
+    panels: dict[str, dict[str, dict[str, Bar]]] = {}
+    for key, title in titles.items():
+        if key in run.metrics:
+            panels[title] = {
+                label: {
+                    method: _bar(run.select(results, place=place, method=method), key, column(key).scale)
+                    for method in run.methods
+                }
+                for place, label in labels.items()
+            }
+    floor = max(column(key).floor for key in titles)
+    return BarChart(label, floor, reference, run.methods, panels)
+
+
+def stage_chart(run: Run, stages: Mapping[str, str], stated: Mapping[str, float]) -> BarChart:
+    """Seconds of each stage (column to name), a panel a rig and width; `stated` are somebody else's."""
+    panels = {
+        rig: {
+            name: {
+                method: _bar(run.select(rig=rig, method=method), key, 1.0)
+                for method in run.methods
+                if run.select(rig=rig, method=method)
+            }
+            for key, name in stages.items()
+            if key in run.metrics
+        }
+        for rig in run.rigs
+    }
+    return BarChart("time [s]", 1e-4, None, run.methods, panels, stated)
+
+
 def _bar(results: Sequence[Result], key: str, scale: float) -> Bar:
     values = [r.metrics[key] * scale for r in results if r.ok and math.isfinite(r.metrics.get(key, math.nan))]
     failed = [r.status for r in results if not r.ok]
@@ -85,7 +128,9 @@ def draw_bars(chart: BarChart) -> Figure:
     slots = groups * (len(chart.methods) + 1)
     small = len(chart.panels) == 1 and slots * _LABEL_BAR_INCHES < COLUMN_INCHES - 0.5
     width = COLUMN_INCHES if small else PAGE_INCHES
-    columns = max(1, min(len(chart.panels), 4, int((width - 0.5) / (slots * _LEAST_BAR_INCHES))))
+    least = max(slots * _LEAST_BAR_INCHES, groups * _longest_word(chart) * _LETTER_INCHES)
+    most = max(1, int((width - 0.5) / least))
+    columns = min(len(chart.panels), 4, most)
     columns = math.ceil(len(chart.panels) / math.ceil(len(chart.panels) / columns))
     rows = math.ceil(len(chart.panels) / columns)
     figure = Figure(figsize=(width, 0.45 + 1.45 * rows + (0.18 if small else 0)), layout="constrained")
@@ -119,6 +164,7 @@ def _scale(chart: BarChart) -> tuple[bool, tuple[float, float]]:
     positive = [value for value in least + largest if value > 0]
     if not positive:
         return False, (0.0, 1.0)
+    positive += chart.stated.values()
     if max(positive) <= chart.floor:
         return True, (0.1 * chart.floor, 1e3 * chart.floor)  # all below what is shown as a number
     low, high = min(positive), max(positive)
@@ -152,17 +198,49 @@ def _draw_panel(
                     ax.plot([x, x], span, color=INK, linewidth=0.6, solid_capstyle="butt")
             if bar.failure:
                 _mark_failure(ax, x, bar, colours[method][0] if bar.mean is None else INK, slot)
+    for g, name in enumerate(panel):
+        if name in chart.stated:
+            _mark_stated(ax, g * step, step / 2 - 0.2, chart.stated[name])
     ax.set_xlim(-step / 2, (len(panel) - 0.5) * step)
-    longest = max(map(len, panel))
-    crowded = longest * 0.055 > slot * step
+    names = [_wrapped(name, slot * step) for name in panel]
+    crowded = max(len(line) for name in names for line in name.split("\n")) * _LETTER_INCHES > slot * step
     ax.set_xticks(
         [g * step for g in range(len(panel))],
-        list(panel),
+        names,
         rotation=25 if crowded else 0,
         ha="right" if crowded else "center",
         rotation_mode="anchor" if crowded else "default",
     )
     ax.tick_params(axis="x", length=0)
+
+
+def _longest_word(chart: BarChart) -> int:
+    """Letters of the longest part that names of several lines cannot be broken within."""
+    names = [name for panel in chart.panels.values() for name in panel if "\n" in name]
+    return max((len(word) for name in names for word in re.findall(r"[^\s-]+-?", name)), default=0)
+
+
+def _wrapped(name: str, inches: float) -> str:
+    """A name of several lines with its long ones broken at hyphens and blanks; one line stays one."""
+    lines = name.split("\n")
+    if len(lines) == 1:
+        return name
+    letters = max(1, int(inches / _LETTER_INCHES))
+    return "\n".join(part for line in lines for part in textwrap.wrap(line, letters, break_long_words=False))
+
+
+def _mark_stated(ax: Axes, x: float, reach: float, value: float) -> None:
+    """A stated value as a line over its group, with the number on it."""
+    ax.plot([x - reach, x + reach], [value, value], color=INK, linewidth=1.4, solid_capstyle="butt")
+    ax.annotate(
+        f"{value:g}",
+        (x, value),
+        xytext=(0, 1.5),
+        textcoords="offset points",
+        ha="center",
+        size=6.5,
+        color=INK,
+    )
 
 
 def _mark_failure(ax: Axes, x: float, bar: Bar, colour: str, slot: float) -> None:
@@ -202,4 +280,6 @@ def _add_legend(figure: Figure, chart: BarChart, columns: int) -> None:
     if any(b.failure for panel in chart.panels.values() for group in panel.values() for b in group.values()):
         cross = Line2D([], [], linestyle="", marker="x", markersize=3.2, color=INK, label="not measured")
         handles.append(cross)
+    if chart.stated:
+        handles.append(Line2D([], [], color=INK, linewidth=1.4, label="as stated"))
     figure.legend(handles=handles, loc="outside upper center", ncols=min(columns, len(handles)))

@@ -64,6 +64,10 @@ def _milliseconds(key: str, heading: str, meaning: str) -> Column:
     return Column(key, heading, "ms", "lower", meaning, scale=1000.0)
 
 
+def _relative(key: str, heading: str, meaning: str) -> Column:
+    return Column(key, heading, "%", "lower", meaning, scale=100.0)
+
+
 def _count(key: str, heading: str, meaning: str) -> Column:
     return Column(key, heading, meaning=meaning, is_count=True)
 
@@ -119,7 +123,15 @@ METRICS: tuple[Column, ...] = (
     _distortion("distortion_native_median", "distortion, median", "Median of native L over the pixels."),
     _distortion("distortion_native_p95", "distortion, p95", "95th percentile of native L over the pixels."),
     _distortion(
-        "distortion_native_all_pixels", "distortion, all pixels", "Native L over every pixel, not the grid."
+        "distortion_native_all_pixels", "native, all pixels", "Native L over every pixel, not the grid."
+    ),
+    _distortion(
+        "distortion_rescaled_all_pixels", "rescaled, all pixels", "The same after the one best scale."
+    ),
+    _distortion(
+        "distortion_stretched_all_pixels",
+        "stretched, all pixels",
+        "The same after the best scales of width and of height.",
     ),
     _distortion("distortion_native_area", "distortion, area term", "The part of native L from (S − 1)²."),
     _distortion("distortion_native_ratio", "distortion, ratio term", "The part from ½(|w1| − |w2|)²."),
@@ -175,9 +187,75 @@ METRICS: tuple[Column, ...] = (
     ),
     _share("order_upright", "upright", "higher", "Share of pixels that are not mirrored (det J > 0)."),
     _pixels("closure_px", "closure", "Largest |inverse(forward(x)) − x| in source pixels.", "max"),
+    Column(
+        "pose_rotation_error_deg",
+        "rotation error",
+        "°",
+        "lower",
+        "Angle between the estimated relative rotation and the true one.",
+    ),
+    Column(
+        "pose_rotation_sigma_deg",
+        "rotation σ",
+        "°",
+        None,
+        "What the estimate believes of that: its standard deviation, from its own covariance.",
+    ),
+    Column(
+        "pose_direction_error_deg",
+        "direction error",
+        "°",
+        "lower",
+        "Angle between the estimated direction of the baseline and the true one.",
+    ),
+    Column("pose_direction_sigma_deg", "direction σ", "°", None, "What the estimate believes of that."),
+    _count("pose_matches", "matches", "Matches that the pose was looked for in."),
+    _count("pose_inliers", "inliers", "Matches that agree with the estimated pose."),
+    _share("reconstruction_density", "density", "higher", "Share of source pixels that get any depth."),
+    _share(
+        "reconstruction_completeness",
+        "completeness",
+        "higher",
+        "Share of source pixels whose depth is within 5 % of the truth. Counted, as all of these, at the "
+        "pixels of the left source image that both cameras see.",
+    ),
+    *(
+        _share(
+            f"reconstruction_completeness_{low}_{high}deg",
+            f"completeness, {low}–{high}°",
+            "higher",
+            f"Completeness of the pixels {low}° to {high}° from the left camera's axis.",
+        )
+        for low, high in ((0, 20), (20, 40), (40, 60), (60, 90))
+    ),
+    _relative("depth_error_median", "depth error, median", "Median of |depth / true depth - 1|."),
+    _relative("depth_error_p95", "depth error, p95", "95th percentile of the same."),
+    _pixels(
+        "dense_epe_px",
+        "disparity error",
+        "Mean distance between a pixel's dense match and its true place, in right source pixels.",
+    ),
+    *(
+        _share(
+            f"dense_bad_{px}px",
+            f"bad > {px} px",
+            "lower",
+            f"Share of source pixels whose dense match is missing or more than {px} px off.",
+        )
+        for px in (1, 2, 4)
+    ),
+    _share(
+        "energy_convex_share",
+        "energy convex",
+        None,
+        "Share of the energy's slices where the rows keep their order, out to ±50 % of the slope, on which "
+        "L is convex.",
+    ),
+    _milliseconds("pose_s", "pose", "Time from the two images to their relative pose."),
     _milliseconds("fit_s", "fit", "Time to fit the rectification."),
     _milliseconds("maps_s", "maps", "Time to make both lookup tables."),
-    _milliseconds("warp_s", "warp", "Time to warp both images."),
+    _milliseconds("warp_s", "warp", "Time to warp both images, their tables included."),
+    _milliseconds("total_s", "total", "Time from the two images to the rectified pair: pose, fit and warp."),
 )
 """Every known metric, in the order in which tables show them."""
 
@@ -208,6 +286,59 @@ DISTORTION_KEYS = (
     "distortion_native_p95",
 )
 """Columns of the table that compares the protocols."""
+
+ALL_PIXELS_KEYS = tuple(f"distortion_{name}_all_pixels" for name in ("native", "rescaled", "stretched"))
+"""The same comparison over every pixel."""
+
+PROTOCOLS = {
+    "distortion_native": "native: as its authors scale it",
+    "distortion_rescaled": "rescaled: best single scale",
+    "distortion_stretched": "stretched: best width and height",
+    "distortion_native_all_pixels": "native, over all pixels",
+}
+"""The ways to compare L, and what each is called above a panel."""
+
+ROW_ERRORS = {
+    "row_error_features_mean_px": "of SIFT matches, as the paper measures it",
+    "row_error_mean_px": "of true correspondences",
+}
+"""The ways to measure row error that stand side by side."""
+
+POSE_KEYS = (
+    "pose_rotation_error_deg",
+    "pose_rotation_sigma_deg",
+    "pose_direction_error_deg",
+    "pose_direction_sigma_deg",
+    "pose_matches",
+    "pose_inliers",
+)
+ROW_KEYS = (
+    "row_error_features_mean_px",
+    "row_error_features_median_px",
+    "row_error_mean_px",
+    "row_error_median_px",
+    "row_error_p95_px",
+    "row_error_below_1px",
+    "row_error_source_mean_px",
+)
+DEPTH_KEYS = (
+    "reconstruction_density",
+    "reconstruction_completeness",
+    "reconstruction_completeness_0_20deg",
+    "reconstruction_completeness_20_40deg",
+    "reconstruction_completeness_40_60deg",
+    "reconstruction_completeness_60_90deg",
+    "depth_error_median",
+    "depth_error_p95",
+    "dense_epe_px",
+    "dense_bad_1px",
+    "dense_bad_2px",
+    "dense_bad_4px",
+)
+"""Columns of the tables that speak of a pose, of rows, of depth."""
+
+STAGES = {"pose_s": "pose", "fit_s": "fit", "warp_s": "warp", "total_s": "total"}
+"""The stages of the pipeline by their columns; a table is part of the warp."""
 
 RANKING_KEY = "log_distortion"
 """The metric methods are ranked by."""

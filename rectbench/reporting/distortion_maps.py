@@ -12,25 +12,25 @@ from numpy.typing import NDArray
 
 from rectbench.cameras import Camera
 from rectbench.cameras.arrays import FloatArray
-from rectbench.errors import RectbenchError
-from rectbench.reporting.numbers import three_digits
+from rectbench.reporting.numbers import decade, three_digits
 from rectbench.reporting.panels import fit_into_box, panel_grid, write_head, write_message
 from rectbench.reporting.run_folder import Result
-from rectbench.reporting.sources import Side, Sources
+from rectbench.reporting.sources import Side, Sources, attempted
 from rectbench.reporting.style import LOST, PAGE_INCHES, looks, plain_log_ticks
 from rectbench.rigs import Rig
 from rectbench.warps import Rectification
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.colors import LogNorm
+    from matplotlib.colors import Colormap, LogNorm
     from matplotlib.figure import Figure
 
 SAMPLES_ACROSS = 200
 _BAR_INCHES = 0.72
 _GAP = 0.02
-_LEAST_SHOWN, _MOST_SHOWN = 1e-4, 1e2
-"""At L = 100 a pixel has become eleven: what lies beyond is lost all the same, and would grey the rest."""
+_LEAST_SHOWN, _MOST_SHOWN = 1e-3, 1e2
+"""Below, no change is seen; above, a pixel has become eleven, and has one colour, not to grey the rest."""
+BEYOND = "#8c1d40"
 _SIDES: tuple[Side, Side] = ("left", "right")
 
 
@@ -49,9 +49,13 @@ def draw_distortion_maps(sources: Sources, results: Sequence[Result], methods: S
     from matplotlib.patches import Patch
 
     _, truth = sources.pair(results[0])
-    panels = [(r, _maps(sources, r, truth.rig)) for r in results]
+    panels = [
+        (r, attempted(r, lambda r=r: _maps(sources, r, truth.rig)))  # type: ignore[misc]
+        for r in results
+    ]
     shown = [m for _, maps in panels if not isinstance(maps, str) for m in maps]
-    norm = LogNorm(*_limits(shown))
+    bottom, top = _limits(shown)
+    norm = LogNorm(bottom, top)
     camera = truth.rig.left
     figure, axes = panel_grid(len(panels), 3, camera.height / ((2 + _GAP) * camera.width), _BAR_INCHES)
     colours = looks(methods)
@@ -63,26 +67,29 @@ def draw_distortion_maps(sources: Sources, results: Sequence[Result], methods: S
         else:
             _draw_panel(ax, maps, norm)
             write_head(ax, result.method, "" if native is None else f"L = {three_digits(native)}", colour)
-    bar_ax = figure.add_axes((1 - 0.85 * _BAR_INCHES / PAGE_INCHES, 0.12, 0.1 / PAGE_INCHES, 0.7))
-    bar = figure.colorbar(ScalarMappable(norm, "viridis"), cax=bar_ax, extend="both")
+    bar_ax = figure.add_axes((1 - 0.85 * _BAR_INCHES / PAGE_INCHES, 0.1, 0.1 / PAGE_INCHES, 0.68))
+    bar = figure.colorbar(ScalarMappable(norm, _shades()), cax=bar_ax, extend="both")
     plain_log_ticks(bar_ax.yaxis)
-    bar.set_label("distortion L of a pixel")
+    bar.set_label("distortion L")
     bar.outline.set_linewidth(0.4)
+    if any((m.values > top).any() for m in shown):
+        bar_ax.text(0.5, 1.07, f"> {decade(top)}", transform=bar_ax.transAxes, ha="center", size=6.5)
     if any(np.isnan(m.values[m.lens]).any() for m in shown):
         patch = Patch(facecolor=LOST, label="not mapped")
         figure.legend(handles=[patch], loc="lower right", borderaxespad=0, fontsize=6)
     return figure
 
 
-def _maps(sources: Sources, result: Result, rig: Rig) -> tuple[SideMap, SideMap] | str:
-    """The maps of both images, or the reason why there are none."""
-    if not result.ok:
-        return f"{result.status}: {result.reason}" if result.reason else result.status
-    try:
-        rect = sources.rectification(result)
-        left, right = (_side_map(sources, rect, rig, side) for side in _SIDES)
-    except Exception as error:  # a plugin's code runs here, and one picture is no reason to lose a report
-        return f"no picture: {error}" if isinstance(error, RectbenchError) else f"no picture: {error!r}"
+def _shades() -> Colormap:
+    """Viridis, with colours of their own for what lies beyond the scale and for what is not mapped."""
+    from matplotlib import colormaps
+
+    return colormaps["viridis"].with_extremes(over=BEYOND, bad=LOST)
+
+
+def _maps(sources: Sources, result: Result, rig: Rig) -> tuple[SideMap, SideMap]:
+    rect = sources.rectification(result)
+    left, right = (_side_map(sources, rect, rig, side) for side in _SIDES)
     return left, right
 
 
@@ -104,16 +111,13 @@ def _limits(maps: Sequence[SideMap]) -> tuple[float, float]:
     if not values.size:
         return _LEAST_SHOWN, 1.0
     low, high = np.quantile(values, [0.02, 0.98])
-    bottom = 10.0 ** math.floor(math.log10(max(low, _LEAST_SHOWN)))
-    top = 10.0 ** math.ceil(math.log10(min(max(high, _LEAST_SHOWN), _MOST_SHOWN)))
+    low, high = np.clip([low, high], [_LEAST_SHOWN, _LEAST_SHOWN], [0.1 * _MOST_SHOWN, _MOST_SHOWN])
+    bottom, top = 10.0 ** math.floor(math.log10(low)), 10.0 ** math.ceil(math.log10(high))
     return bottom, max(top, 10 * bottom)
 
 
 def _draw_panel(ax: Axes, maps: tuple[SideMap, SideMap], norm: LogNorm) -> None:
-    from matplotlib import colormaps
-
-    colours = colormaps["viridis"].with_extremes(bad=LOST)
-    start = 0.0
+    colours, start = _shades(), 0.0
     for side in maps:
         height, width = side.values.shape
         shades = colours(norm(side.values))

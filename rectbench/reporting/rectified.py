@@ -1,4 +1,4 @@
-"""Rectified pairs side by side, with scan lines through true correspondences."""
+"""Rectified pairs side by side, with scan lines through true correspondences and boxes round patches."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rectbench.cameras.arrays import FloatArray
-from rectbench.errors import RectbenchError
 from rectbench.rendering.images import StereoPair
 from rectbench.rendering.truth import Truth
 from rectbench.reporting.columns import column
 from rectbench.reporting.numbers import shown
 from rectbench.reporting.panels import fit_into_box, panel_grid, write_head, write_message
 from rectbench.reporting.run_folder import Result
-from rectbench.reporting.sources import Sources
+from rectbench.reporting.sources import Sources, attempted
 from rectbench.reporting.style import PAGE_INCHES, looks
+from rectbench.warps import Matches, Rectification
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -27,19 +27,39 @@ if TYPE_CHECKING:
 LINES = 7
 PIXELS_PER_INCH = 220
 _LINE_COLOURS = ("#ffd400", "#00e5ff", "#ff5ca8", "#7dff5a", "#ff9a3c", "#b9a3ff", "#ffffff")
+_BOX_COLOUR = "#ff1f1f"
+_BOX_SHARE = 0.14
+_BOX_AIMS = ((0.22, 0.4), (0.5, 0.62), (0.78, 0.48))
+"""Side of a box as a share of the image's height, and about where boxes go, as shares of the image."""
+_RING_SHARE = 0.025
 _GAP = 0.012
 Image = NDArray[np.generic]
 
 
 @dataclass(frozen=True)
+class Shown:
+    """Correspondences [n, 2] and [m, 2] in both images: of scan lines and of boxes; NaN where lost."""
+
+    lines: Matches
+    boxes: Matches
+
+    def moved(self, rect: Rectification) -> Shown:
+        """The same points in the rectified images."""
+        return Shown(*(Matches(rect.left.forward(m.left), rect.right.forward(m.right)) for m in self._both))
+
+    @property
+    def _both(self) -> tuple[Matches, Matches]:
+        return self.lines, self.boxes
+
+
+@dataclass(frozen=True)
 class Panel:
-    """A pair of equal size images and the points that correspond, [n, 2] each, NaN where lost."""
+    """A pair of equal size images and what corresponds in them."""
 
     note: str
     left: Image
     right: Image
-    points_left: FloatArray
-    points_right: FloatArray
+    shown: Shown
 
 
 def draw_rectified(sources: Sources, results: Sequence[Result], methods: Sequence[str]) -> Figure:
@@ -48,9 +68,12 @@ def draw_rectified(sources: Sources, results: Sequence[Result], methods: Sequenc
     Raises whatever the sources raise for the pair itself; a method that fails shows why in its place.
     """
     pair, truth = sources.pair(results[0])
-    points = _spread(truth, pair)
-    panels: list[tuple[str, Panel | str]] = [("", Panel("", pair.left, pair.right, *points))]
-    panels += [(r.method, _panel(sources, r, pair, points)) for r in results]
+    marks = _marks(truth, pair)
+    panels: list[tuple[str, Panel | str]] = [("", Panel("", pair.left, pair.right, marks))]
+    panels += [
+        (r.method, attempted(r, lambda r=r: _panel(sources, r, pair, marks)))  # type: ignore[misc]
+        for r in results
+    ]
     height, width = pair.left.shape[:2]
     figure, axes = panel_grid(len(panels), 2, height / ((2 + _GAP) * width))
     colours = looks(methods)
@@ -64,21 +87,11 @@ def draw_rectified(sources: Sources, results: Sequence[Result], methods: Sequenc
     return figure
 
 
-def _panel(
-    sources: Sources, result: Result, pair: StereoPair, points: tuple[FloatArray, FloatArray]
-) -> Panel | str:
-    """The method's pair, or the reason why there is none."""
-    if not result.ok:
-        return f"{result.status}: {result.reason}" if result.reason else result.status
-    try:
-        rect = sources.rectification(result)
-        left, right = rect.remap(pair.left, pair.right)
-        moved = rect.left.forward(points[0]), rect.right.forward(points[1])
-    except Exception as error:  # a plugin's code runs here, and one picture is no reason to lose a report
-        return f"no picture: {error}" if isinstance(error, RectbenchError) else f"no picture: {error!r}"
+def _panel(sources: Sources, result: Result, pair: StereoPair, marks: Shown) -> Panel:
+    rect = sources.rectification(result)
     keys = [key for key in ("row_error_mean_px", "log_distortion") if key in result.metrics]
     note = ",  ".join(f"{column(k).heading} {_quantity(result.metrics[k], k)}" for k in keys)
-    return Panel(note, left, right, *moved)
+    return Panel(note, *rect.remap(pair.left, pair.right), marks.moved(rect))
 
 
 def _quantity(value: float, key: str) -> str:
@@ -86,18 +99,46 @@ def _quantity(value: float, key: str) -> str:
     return f"{shown(value, shown_as)} {shown_as.unit}".strip()
 
 
-def _spread(truth: Truth, pair: StereoPair) -> tuple[FloatArray, FloatArray]:
-    """Correspondences [n, 2] in both sources, one in each band of rows, left and right by turns."""
+def _marks(truth: Truth, pair: StereoPair) -> Shown:
+    """What is marked: a line in each band of rows, left and right by turns; a box in each third."""
+    matches = Matches(*truth.matches(2000, seed=0))
     height, width = pair.left.shape[:2]
-    left, right = truth.matches(2000, seed=0)
-    chosen: list[int] = []
-    for band in range(LINES):
-        row = (band + 0.5) / LINES * height
-        aim = np.array([width * (0.36 if band % 2 else 0.64), row])
-        near = np.flatnonzero(np.abs(left[:, 1] - row) < 0.5 * height / LINES)
-        if near.size:
-            chosen.append(int(near[np.argmin(np.linalg.norm(left[near] - aim, axis=1))]))
-    return left[chosen], right[chosen]
+    aims = [(width * (0.36 if band % 2 else 0.64), (band + 0.5) / LINES * height) for band in range(LINES)]
+    lines = [_nearest(matches.left, aim, 0.5 * height / LINES) for aim in aims]
+    texture = _texture(pair.left, matches.left)
+    places = [(x * width, y * height) for x, y in _BOX_AIMS]
+    boxes = [_most_textured(matches.left, texture, place, 0.07 * width) for place in places]
+    return Shown(*(Matches(*(side[_distinct(chosen)] for side in matches)) for chosen in (lines, boxes)))
+
+
+def _distinct(chosen: Sequence[int | None]) -> list[int]:
+    return list(dict.fromkeys(i for i in chosen if i is not None))
+
+
+def _nearest(points: FloatArray, aim: tuple[float, float], rows: float) -> int | None:
+    """The point nearest to `aim` of those at most `rows` above or below it."""
+    near = np.flatnonzero(np.abs(points[:, 1] - aim[1]) < rows)
+    return int(near[np.argmin(np.linalg.norm(points[near] - aim, axis=1))]) if near.size else None
+
+
+def _most_textured(
+    points: FloatArray, texture: FloatArray, aim: tuple[float, float], reach: float
+) -> int | None:
+    """The point within `reach` of `aim` where there is most to see."""
+    near = np.flatnonzero(np.linalg.norm(points - aim, axis=1) < reach)
+    return int(near[np.argmax(texture[near])]) if near.size else None
+
+
+def _texture(image: Image, points: FloatArray) -> FloatArray:
+    """Contrast of the image's surroundings of each point [n]."""
+    import cv2
+
+    grey = cv2.cvtColor(np.ascontiguousarray(image), cv2.COLOR_RGB2GRAY).astype(np.float32)
+    side = max(3, round(_BOX_SHARE * grey.shape[0])) | 1
+    mean, square = (cv2.blur(values, (side, side)) for values in (grey, grey * grey))
+    u, v = np.clip(np.rint(points), 0, np.array(grey.shape[::-1]) - 1).astype(int).T
+    contrast: FloatArray = (square - mean * mean)[v, u].astype(np.float64)
+    return contrast
 
 
 def _draw_panel(ax: Axes, panel: Panel) -> None:
@@ -105,21 +146,40 @@ def _draw_panel(ax: Axes, panel: Panel) -> None:
     gap = _GAP * width
     _show(ax, panel.left, 0.0)
     _show(ax, panel.right, width + gap)
+    fit_into_box(ax, 2 * width + gap, height)
     shift = np.array([width + gap, 0.0])
-    for i, (a, b) in enumerate(zip(panel.points_left, panel.points_right + shift, strict=True)):
-        if not _inside(a, width, height) or not _inside(b - shift, width, height):
+    points = panel.shown
+    for i, (a, b) in enumerate(zip(*points.lines, strict=True)):
+        if not all(_inside(point, width, height, _RING_SHARE * height) for point in (a, b)):
             continue
         colour = _LINE_COLOURS[i % len(_LINE_COLOURS)]
-        ax.plot([0, 2 * width + gap], [a[1], a[1]], color=colour, linewidth=0.6)
-        for x, y in (a, b):
+        ax.plot([0, 2 * width + gap], [a[1], a[1]], color=colour, linewidth=0.5)
+        for x, y in (a, b + shift):
             ax.plot(
                 x, y, "o", markersize=3.2, markerfacecolor="none", markeredgecolor=colour, markeredgewidth=0.8
             )
-    fit_into_box(ax, 2 * width + gap, height)
+    side = _BOX_SHARE * height
+    for a, b in zip(*points.boxes, strict=True):
+        if all(_inside(point, width, height, side / 2) for point in (a, b)):
+            _draw_boxes(ax, (a, b + shift), side)
 
 
-def _inside(point: FloatArray, width: int, height: int) -> bool:
-    return bool(np.isfinite(point).all() and 0 <= point[0] < width and 0 <= point[1] < height)
+def _draw_boxes(ax: Axes, centres: tuple[FloatArray, FloatArray], side: float) -> None:
+    """Boxes of one size round both points, and the first one's upper and lower edge carried across."""
+    from matplotlib.patches import Rectangle
+
+    left, right = centres
+    for y in (left[1] - side / 2, left[1] + side / 2):
+        ax.plot([left[0], right[0]], [y, y], color=_BOX_COLOUR, linewidth=0.5, linestyle=(0, (3, 2)))
+    for x, y in centres:
+        corner = (x - side / 2, y - side / 2)
+        ax.add_patch(Rectangle(corner, side, side, fill=False, color=_BOX_COLOUR, linewidth=1.1))
+
+
+def _inside(point: FloatArray, width: int, height: int, margin: float) -> bool:
+    """Whether a mark that reaches `margin` about a point lies on the image."""
+    size = np.array([width, height])
+    return bool(np.isfinite(point).all() and (point >= margin).all() and (point <= size - margin).all())
 
 
 def _show(ax: Axes, image: Image, x: float) -> None:

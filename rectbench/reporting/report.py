@@ -7,13 +7,13 @@ from pathlib import Path
 from typing import Any
 
 from rectbench.bench.progress import Progress
-from rectbench.reporting.figures import EXTENSIONS, GROUPS, draw_changed, planned_figures
+from rectbench.reporting.figure_plans import planned_figures
+from rectbench.reporting.figures import EXTENSIONS, draw_changed
 from rectbench.reporting.page import render_page
-from rectbench.reporting.run_facts import wanted_groups
+from rectbench.reporting.part_tables import all_tables
 from rectbench.reporting.run_folder import read_run
 from rectbench.reporting.sources import Sources, sources_of
 from rectbench.reporting.tables import SPELLINGS, Table
-from rectbench.reporting.tabulation import all_tables
 from rectbench.reporting.writing import write_atomically
 
 MANIFEST = "figures/manifest.json"
@@ -40,10 +40,9 @@ def write_report(run_dir: Path, *, progress: Progress | None = None, sources: So
     manifest = _read_manifest(run_dir)
     tables = list(all_tables(run))
     written = [path for table in tables for path in _write_table(run_dir, table)]
-    groups = wanted_groups(run)
-    plans = planned_figures(run, sources or sources_of(run), GROUPS if groups is None else groups)
+    plans = planned_figures(run, sources or sources_of(run))
     with (progress or Progress()).stage("figures", len(plans)) as advance:
-        drawn, digests = draw_changed(run, plans, manifest["figures"], advance)
+        drawn, digests = draw_changed(run_dir, plans, manifest["figures"], advance)
     written += [figure.plan.path(e) for figure in drawn if figure.there for e in EXTENSIONS]
     _remove_leftovers(run_dir, set(manifest["files"]) - set(written))
     write_atomically(run_dir / "index.html", render_page(run, tables, drawn))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any, TypeVar
@@ -36,6 +36,10 @@ class Result:
     metrics: Mapping[str, float]
     notes: Mapping[str, Any]
     """What the method has to say of its answer."""
+    options: Mapping[str, Any]
+    """What the method was told."""
+    group: str
+    """The part of the report it belongs to; nothing in a report without parts."""
     row: Mapping[str, Any] = field(repr=False)
 
     @property
@@ -48,14 +52,28 @@ class Result:
         """The images the cell is about: scene, rig, motion, seed."""
         return self.scene, self.rig, self.motion, self.seed
 
+    @property
+    def place(self) -> tuple[str, str, str]:
+        """The pair without its seed: scene, rig, motion."""
+        return self.scene, self.rig, self.motion
+
+    @property
+    def is_random_start(self) -> bool:
+        """Whether it belongs to a study of random starts, and is no method of its own."""
+        return self.options.get("start") == "random"
+
 
 @dataclass(frozen=True)
 class Run:
-    """A run's folder: `facts` is run.json, `results` one entry a row of results.parquet."""
+    """A run's folder: `facts` is run.json, `results` one entry a row of results.parquet.
+
+    A part of a report is a Run too: the same facts, the results of one `group`.
+    """
 
     folder: Path
     facts: Mapping[str, Any]
     results: tuple[Result, ...]
+    group: str = ""
 
     @cached_property
     def methods(self) -> tuple[str, ...]:
@@ -108,6 +126,20 @@ class Run:
         names = _distinct(str(r.row["report"]) for r in self.results if r.row.get("report"))
         return names[0] if names else str(self.facts.get("report", self.folder.name))
 
+    @property
+    def parts(self) -> tuple[Run, ...]:
+        """The parts of the report in its order; the run itself where it has none."""
+        groups = _distinct(r.group for r in self.results)
+        return (self,) if groups == ("",) else tuple(map(self.part, groups))
+
+    def part(self, group: str) -> Run:
+        """The results of one group."""
+        return replace(self, results=self.select(group=group), group=group)
+
+    def only(self, results: Iterable[Result]) -> Run:
+        """The same with some of its results."""
+        return replace(self, results=tuple(results))
+
     def select(self, results: Sequence[Result] | None = None, **wanted: Any) -> tuple[Result, ...]:
         """The results whose attributes equal `wanted`, e.g. `run.select(rig="t265", pose="exact")`."""
         pool = self.results if results is None else results
@@ -147,7 +179,8 @@ def _read_rows(path: Path) -> list[dict[str, Any]]:
 
 
 def _results(rows: list[dict[str, Any]], path: Path) -> Iterable[Result]:
-    labels = _method_labels(rows)
+    groups = _distinct(map(_group, rows))
+    labels = {group: _method_labels([row for row in rows if _group(row) == group]) for group in groups}
     for row in rows:
         missing = [name for name in ("scene", "rig", "method", "status") if row.get(name) is None]
         if missing:
@@ -157,12 +190,14 @@ def _results(rows: list[dict[str, Any]], path: Path) -> Iterable[Result]:
             rig=str(row["rig"]),
             motion=str(row.get("motion") or "as-calibrated"),
             pose=str(row.get("pose") or EXACT_POSE),
-            method=labels[_variant(row)],
+            method=labels[_group(row)][_variant(row)],
             seed=int(row.get("seed") or 0),
             status=str(row["status"]),
             reason=str(row.get("reason") or ""),
             metrics={name: float(value) for name, value in row.items() if _is_metric(name, value)},
             notes=_json_object(row.get("notes")),
+            options=_json_object(row.get("options")),
+            group=_group(row),
             row=row,
         )
 
@@ -171,6 +206,10 @@ def _is_metric(name: str, value: Any) -> bool:
     if name in IDENTITY or isinstance(value, bool) or not isinstance(value, int | float):
         return False
     return not math.isnan(value)
+
+
+def _group(row: Mapping[str, Any]) -> str:
+    return str(row.get("group") or "")
 
 
 def _variant(row: Mapping[str, Any]) -> tuple[str, str]:

@@ -7,7 +7,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, Protocol, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
 
 from rectbench.bench import recall
 from rectbench.bench.planning import CellTask, PairTask
@@ -22,8 +25,21 @@ from rectbench.warps import Rectification
 
 Side = Literal["left", "right"]
 Identity = tuple[Any, ...]
+Made = TypeVar("Made")
 _FINGERPRINT = "distortion_native"
 _SAME_FIT = 1e-3
+
+
+class Cloud(Protocol):
+    """Points in space, one for each pixel of an image."""
+
+    @property
+    def points(self) -> FloatArray:
+        """[H, W, 3] in the left camera's frame, metres; NaN where there is none."""
+
+    @property
+    def colours(self) -> NDArray[np.uint8]:
+        """[H, W, 3] RGB."""
 
 
 @dataclass(frozen=True)
@@ -35,13 +51,25 @@ class Sources:
     pair : the images and the truth of a cell.
     rectification : the cell's rectification, fitted again.
     distortion : native distortion [N] of a rectification at pixels [N, 2] of one side of a rig.
+    reconstruction : the points that dense matching on the cell's rectified pair gives.
     version : changes with whatever changes those answers while the cell's row stays the same.
     """
 
     pair: Callable[[Result], tuple[StereoPair, Truth]]
     rectification: Callable[[Result], Rectification]
     distortion: Callable[[Rectification, Rig, Side, FloatArray], FloatArray]
+    reconstruction: Callable[[Result], Cloud]
     version: Callable[[Result], str] = lambda result: ""
+
+
+def attempted(result: Result, make: Callable[[], Made]) -> Made | str:
+    """What `make` gives of a cell, or the reason why its picture is missing."""
+    if not result.ok:
+        return f"{result.status}: {result.reason}" if result.reason else result.status
+    try:
+        return make()
+    except Exception as error:  # a plugin's code runs here, and one picture is no reason to lose a report
+        return f"no picture: {error}" if isinstance(error, RectbenchError) else f"no picture: {error!r}"
 
 
 def sources_of(run: Run) -> Sources:
@@ -51,6 +79,7 @@ def sources_of(run: Run) -> Sources:
         pair=recalled.pair,
         rectification=recalled.rectification,
         distortion=lambda rect, rig, side, pixels: distortion(rect, rig, pixels).per_pixel[side],
+        reconstruction=recalled.reconstruction,
         version=recalled.version,
     )
 
@@ -86,6 +115,12 @@ class _Recalled:
             _require_same(rectification, result)
             self._fitted[key] = rectification
         return self._fitted[key]
+
+    def reconstruction(self, result: Result) -> Cloud:
+        from rectbench.matching.reconstruction import reconstruct
+
+        pair, _ = self.pair(result)
+        return reconstruct(self.rectification(result), pair.left, pair.right)
 
     def version(self, result: Result) -> str:
         try:

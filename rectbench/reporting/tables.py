@@ -35,12 +35,13 @@ class Entry:
 
 @dataclass(frozen=True)
 class Heading:
-    """A column's head: what is read, its name in CSV, and whether it holds numbers."""
+    """A column's head: what is read, its name in CSV, whether it holds numbers, or sentences to wrap."""
 
     text: str
     key: str
     numeric: bool = True
     meaning: str = ""
+    wraps: bool = False
 
 
 @dataclass(frozen=True)
@@ -53,7 +54,10 @@ class Section:
 
 @dataclass(frozen=True)
 class Table:
-    """Headings and sections of rows; `name` is the file's stem, `notes` stand below the table."""
+    """Headings and sections of rows; `name` is the file's stem, `notes` stand below the table.
+
+    `kind` says what the table is about, `part` which part of the report it belongs to.
+    """
 
     name: str
     title: str
@@ -61,6 +65,8 @@ class Table:
     headings: tuple[Heading, ...]
     sections: tuple[Section, ...]
     notes: tuple[str, ...] = ()
+    kind: str = ""
+    part: str = ""
 
     @property
     def rows(self) -> list[tuple[Entry, ...]]:
@@ -72,6 +78,16 @@ def number(value: float | None, shown_as: Column, suffix: str = "") -> Entry:
     """An entry for a metric's value, with `suffix` after a number that is there."""
     text = shown(value, shown_as)
     return Entry(text if text == MISSING else text + suffix, value)
+
+
+def words(text: str) -> Entry:
+    """An entry that says what it holds."""
+    return Entry(text, text)
+
+
+def whole(count: int) -> Entry:
+    """An entry for a number of things."""
+    return Entry(str(count), float(count))
 
 
 def with_best(entries: Sequence[Entry], shown_as: Column, eligible: Sequence[bool]) -> list[Entry]:
@@ -125,7 +141,7 @@ def to_markdown(table: Table) -> str:
 
 def to_latex(table: Table) -> str:
     r"""A `table*` for `\usepackage{booktabs,graphicx}`, shrunk to the text's width where it is wider."""
-    alignment = "".join("r" if heading.numeric else "l" for heading in table.headings)
+    alignment = "".join(map(_latex_alignment, table.headings))
     lines = [
         "% needs \\usepackage{booktabs,graphicx}",
         "\\begin{table*}[t]",
@@ -166,6 +182,12 @@ def _markdown_entry(entry: Entry) -> str:
 def _escape_markdown(text: str) -> str:
     escaped = re.sub(r"([\\`*_\[\]|])", r"\\\1", " ".join(text.split()))
     return escaped.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
+
+
+def _latex_alignment(heading: Heading) -> str:
+    if heading.wraps:
+        return "p{0.3\\textwidth}"
+    return "r" if heading.numeric else "l"
 
 
 def _latex_row(fields: Sequence[str]) -> str:
@@ -217,6 +239,8 @@ _LATEX = {
     "²": "$^2$",
     "∞": r"$\infty$",
     "°": r"$^\circ$",
+    "±": r"$\pm$",
+    "Ψ": r"$\Psi$",
     "→": r"$\rightarrow$",
     "↓": r"$\downarrow$",
     "↑": r"$\uparrow$",

@@ -1,15 +1,27 @@
-"""The tables of a run: one a pose, one a pair of scene and rig, one by protocol, one of failures."""
+"""The tables every run has: one a pose, one a pair of scene and rig, one by protocol, one of failures.
+
+A report of several parts has them for each part, under names that hold the part's.
+"""
 
 from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from itertools import product
 from typing import Any
 
-from rectbench.reporting.columns import DISTORTION_KEYS, MAIN_KEYS, RANKING_KEY, Column, column
+from rectbench.reporting.columns import (
+    ALL_PIXELS_KEYS,
+    DISTORTION_KEYS,
+    MAIN_KEYS,
+    RANKING_KEY,
+    Column,
+    column,
+)
 from rectbench.reporting.numbers import MISSING, three_digits
+from rectbench.reporting.run_facts import part_title, wanted_kinds
 from rectbench.reporting.run_folder import Result, Run
 from rectbench.reporting.summaries import Summary, ranked, summarise
 from rectbench.reporting.tables import Entry, Heading, Section, Table, number, with_best
@@ -28,18 +40,32 @@ def slug(*parts: str) -> str:
     return "-".join(filter(None, (re.sub(r"[^a-z0-9]+", "-", part.lower()).strip("-") for part in parts)))
 
 
-def all_tables(run: Run) -> Iterator[Table]:
-    """Every table of the run, the main ones first."""
-    yield from main_tables(run)
-    yield distortion_table(run)
-    yield from pair_tables(run)
-    if run.failures:
-        yield failures_table(run)
+def named(run: Run, stem: str, *parts: str) -> str:
+    """A file's stem that holds the part's name, once."""
+    return slug(stem, "" if run.group == stem else run.group, *parts)
 
 
 def main_tables(run: Run) -> list[Table]:
-    """Methods by key metrics, averaged over every pair of the run; one table a pose."""
-    return [_main_table(run, pose) for pose in run.poses]
+    """Methods by key metrics, averaged over every pair; one table a part and pose."""
+    return [
+        _main_table(methods, pose)
+        for part in run.parts
+        if (methods := methods_part(part)) and is_ranked(methods)
+        for pose in methods.poses
+    ]
+
+
+def methods_part(part: Run) -> Run | None:
+    """A part without the random starts that are studied in it: these are no methods to compare."""
+    if "starts" not in wanted_kinds(part):
+        return part
+    others = [r for r in part.results if not r.is_random_start]
+    return part.only(others) if others else None
+
+
+def is_ranked(run: Run) -> bool:
+    """Whether there is anything to rank methods by, or nothing at all to show but their failure."""
+    return not run.group or RANKING_KEY in run.metrics or not run.metrics
 
 
 def _main_table(run: Run, pose: str) -> Table:
@@ -52,7 +78,7 @@ def _main_table(run: Run, pose: str) -> Table:
         Heading("rank", "rank", meaning=f"By {column(RANKING_KEY).heading}; failures count before it.")
     ]
     headings += [Heading("method", "method", numeric=False), OK_HEADING]
-    headings += [_heading(key) for key in keys] + [NOT_OK_HEADING] * failing
+    headings += [heading(key) for key in keys] + [NOT_OK_HEADING] * failing
     ranks = [
         Entry(str(i), i) if s.averages.get(RANKING_KEY) and s.ok else Entry(MISSING)
         for i, s in enumerate(summaries, 1)
@@ -69,10 +95,12 @@ def _main_table(run: Run, pose: str) -> Table:
         for i, s in enumerate(summaries)
     )
     pairs = len({r.pair for r in results})
-    caption = f"Averages over {_count(pairs, 'pair')} ({_grid_text(results)}), ranked by log distortion."
+    caption = f"Averages over {counted(pairs, 'pair')} ({_grid_text(results)}), ranked by log distortion."
     return Table(
-        name=slug("main", pose),
-        title=f"Methods under the {pose} pose",
+        kind="main",
+        part=run.group,
+        name=named(run, "main", pose),
+        title=titled(run, f"Methods under the {pose} pose"),
         caption=caption,
         headings=tuple(headings),
         sections=(Section("", rows),),
@@ -82,46 +110,73 @@ def _main_table(run: Run, pose: str) -> Table:
 
 def distortion_table(run: Run) -> Table:
     """Distortion under each protocol, a section a rig, averaged over that rig's pairs."""
-    keys = [key for key in DISTORTION_KEYS if key in run.metrics]
-    pose_results = run.select(pose=run.geometric_pose)
-    failing = any(not r.ok for r in pose_results)
-    sections = []
-    for rig, motion in product(run.rigs, run.motions):
-        results = run.select(pose_results, rig=rig, motion=motion)
-        if not results:
-            continue
-        summaries = [
-            summarise(m, [r for r in results if r.method == m], keys)
-            for m in run.methods
-            if any(r.method == m for r in results)
-        ]
-        fields = [_averaged_field(summaries, key) for key in keys]
-        rows = tuple(
-            (
-                Entry(s.method, s.method),
-                _ok_entry(s),
-                *(f[i] for f in fields),
-                *[_not_ok_entry(s, results)] * failing,
-            )
-            for i, s in enumerate(summaries)
-        )
-        sections.append(Section(f"{rig}, {motion}" if len(run.motions) > 1 else rig, rows))
-    return Table(
-        name="distortion",
-        title="Distortion by protocol",
+    results = run.select(pose=run.geometric_pose)
+    sections = {
+        f"{rig}, {motion}" if len(run.motions) > 1 else rig: run.select(results, rig=rig, motion=motion)
+        for rig, motion in product(run.rigs, run.motions)
+    }
+    keys = (*DISTORTION_KEYS, *ALL_PIXELS_KEYS) if run.group else DISTORTION_KEYS
+    table = methods_table(run, keys, sections)
+    return replace(
+        table,
+        kind="distortion",
+        name=named(run, "distortion"),
+        title=titled(run, "Distortion by protocol"),
         caption=(
             f"Averages over the pairs of each rig, {run.geometric_pose} pose. Native: each method's own "
             "scale; rescaled: the one scale best for L; stretched: the best scales of width and height."
         ),
+    )
+
+
+def methods_table(run: Run, keys: Sequence[str], sections: Mapping[str, Sequence[Result]]) -> Table:
+    """Averages of the `keys` that the run has, a row a method, in a section of results each."""
+    keys = [key for key in keys if key in run.metrics]
+    failing = any(not r.ok for results in sections.values() for r in results)
+    return Table(
+        name="",
+        title="",
+        caption="",
         headings=(
             Heading("method", "method", numeric=False),
             OK_HEADING,
-            *(_heading(key) for key in keys),
+            *(heading(key) for key in keys),
             *[NOT_OK_HEADING] * failing,
         ),
-        sections=tuple(sections),
+        sections=tuple(
+            Section(title, _method_rows(run, keys, results, failing))
+            for title, results in sections.items()
+            if results
+        ),
         notes=(f"{PARTIAL}.",) if failing else (),
+        part=run.group,
     )
+
+
+def _method_rows(
+    run: Run, keys: Sequence[str], results: Sequence[Result], failing: bool
+) -> tuple[tuple[Entry, ...], ...]:
+    summaries = [
+        summarise(m, [r for r in results if r.method == m], keys)
+        for m in run.methods
+        if any(r.method == m for r in results)
+    ]
+    fields = [_averaged_field(summaries, key) for key in keys]
+    return tuple(
+        (
+            Entry(s.method, s.method),
+            _ok_entry(s),
+            *(f[i] for f in fields),
+            *[_not_ok_entry(s, results)] * failing,
+        )
+        for i, s in enumerate(summaries)
+    )
+
+
+def titled(run: Run, title: str) -> str:
+    """A table's title, with the part's before it."""
+    part = part_title(run)
+    return f"{part}: {title[0].lower()}{title[1:]}" if part else title
 
 
 def pair_tables(run: Run) -> list[Table]:
@@ -149,7 +204,9 @@ def _pair_table(run: Run, scene: str, rig: str, results: Sequence[Result]) -> Ta
         rows += [_note_row(name, present) for name in notes]
         sections.append(Section(", ".join(parts), (status, *rows)))
     return Table(
-        name=slug("pair", scene, rig),
+        kind="pair",
+        part=run.group,
+        name=named(run, "pair", scene, rig),
         title=f"{scene} seen by {rig}",
         caption="Every metric of every method; the best of each row is bold.",
         headings=(
@@ -189,7 +246,9 @@ def _status_entry(result: Result | None) -> Entry:
 
 def failures_table(run: Run) -> Table:
     """Every cell without a measurement, its status and the reason given."""
-    names = ("scene", "rig", "motion", "pose", "method", "seed", "status", "reason")
+    names: tuple[str, ...] = ("scene", "rig", "motion", "pose", "method", "seed", "status", "reason")
+    if any(r.group for r in run.results):
+        names = ("group", *names)
     rows = tuple(
         tuple(
             Entry(str(value) or MISSING, value, failed=name == "status")
@@ -198,15 +257,16 @@ def failures_table(run: Run) -> Table:
         for r in run.failures
     )
     return Table(
+        kind="failures",
         name="failures",
         title="Cells without a measurement",
-        caption=f"{len(rows)} of {_count(len(run.results), 'cell')}.",
-        headings=tuple(Heading(name, name, numeric=name == "seed") for name in names),
+        caption=f"{len(rows)} of {counted(len(run.results), 'cell')}.",
+        headings=tuple(Heading(n, n, numeric=n == "seed", wraps=n == "reason") for n in names),
         sections=(Section("", rows),),
     )
 
 
-def _heading(key: str) -> Heading:
+def heading(key: str) -> Heading:
     shown_as = column(key)
     return Heading(_head_text(shown_as), key, meaning=shown_as.meaning)
 
@@ -243,14 +303,14 @@ def _averaged_field(summaries: Sequence[Summary], key: str) -> list[Entry]:
 
 def _grid_text(results: Sequence[Result]) -> str:
     parts = [
-        _count(len({r.scene for r in results}), "scene"),
-        _count(len({r.rig for r in results}), "rig"),
+        counted(len({r.scene for r in results}), "scene"),
+        counted(len({r.rig for r in results}), "rig"),
     ]
     for name, values in (("motion", {r.motion for r in results}), ("seed", {r.seed for r in results})):
         if len(values) > 1:
-            parts.append(_count(len(values), name))
+            parts.append(counted(len(values), name))
     return ", ".join(parts)
 
 
-def _count(n: int, noun: str) -> str:
+def counted(n: int, noun: str) -> str:
     return f"{n} {noun}{'' if n == 1 else 's'}"

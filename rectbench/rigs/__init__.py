@@ -1,9 +1,20 @@
 """Two calibrated cameras and their pose; the calibration files people have; motions and pose noise."""
 
-from rectbench.rigs.loading import load_rig, rig_names
+from rectbench.rigs.loading import calibration_formats, load_rig, rig_names
 from rectbench.rigs.motions import MOTIONS, Motion
 from rectbench.rigs.native import write_rig
 from rectbench.rigs.poses import POSES, PoseNoise, perturb
 from rectbench.rigs.rig import Rig
 
-__all__ = ["MOTIONS", "POSES", "Motion", "PoseNoise", "Rig", "load_rig", "perturb", "rig_names", "write_rig"]
+__all__ = [
+    "MOTIONS",
+    "POSES",
+    "Motion",
+    "PoseNoise",
+    "Rig",
+    "calibration_formats",
+    "load_rig",
+    "perturb",
+    "rig_names",
+    "write_rig",
+]

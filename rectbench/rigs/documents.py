@@ -2,44 +2,50 @@
 
 from __future__ import annotations
 
+import errno
 import math
 import os
-import re
 import reprlib
-from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import yaml
 
 from rectbench.cameras.arrays import FloatArray
 from rectbench.errors import InvalidInput, UnknownName
+from rectbench.rigs.parsing import Malformed, parse
+from rectbench.rigs.rig import checked_rotation
 
 MAX_BYTES = 1 << 22
 """Calibrations take kilobytes, some with every image point a few hundred; what is larger is another file."""
 
-MAX_YAML_CHARACTERS = 1 << 17
-"""A rig or camchain takes a few thousand; PyYAML is slow enough for a megabyte to look like a hang."""
+MAX_NUMBERS = 256
+"""Numbers of one list; no matrix of a rig has more."""
 
 MAX_PIXELS = 1 << 16
 """Longest side of an image that a calibration may state."""
 
 
-def read_text(path: str | os.PathLike[str]) -> str:
-    """The text of a calibration file; raises InvalidInput where there is none to be had."""
+def read_bytes(path: str | os.PathLike[str], limit: int) -> bytes:
+    """The first `limit` bytes of a file; raises InvalidInput where there are none to be had."""
     try:
+        if Path(path).is_fifo():  # opening it would wait for a writer
+            raise OSError(errno.ESPIPE, "a pipe")
         with Path(path).open("rb") as stream:
-            content = stream.read(MAX_BYTES + 1)
+            return stream.read(limit)
     except OSError as error:
         raise InvalidInput(
             f"{path}: cannot be read ({error.strerror}); expected a calibration file"
         ) from None
     except ValueError as error:  # a NUL in the path
         raise InvalidInput(f"{str(path)!r}: cannot be read ({error}); expected a path") from None
+
+
+def as_text(content: bytes, path: str) -> str:
+    """The text that `content`, read up to a byte beyond `MAX_BYTES`, is; InvalidInput where it is none."""
     if len(content) > MAX_BYTES:
         raise InvalidInput(f"{path}: is larger than {MAX_BYTES >> 20} MiB; expected a calibration file")
     try:
@@ -53,30 +59,14 @@ def read_text(path: str | os.PathLike[str]) -> str:
     return text
 
 
-def parse_yaml(text: str, file: str) -> Section:
-    """The top mapping of a YAML document, OpenCV's `%YAML:1.0` header allowed.
-
-    Only strings, lists and mappings come out of it: no tag constructs an object, and aliases, of
-    which a small file can unfold into a huge one, are refused.
-    """
-    if len(text) > MAX_YAML_CHARACTERS:
-        raise InvalidInput(
-            f"{file}: is larger than {MAX_YAML_CHARACTERS >> 10} KiB; expected two cameras and a pose"
-        )
-    text = re.sub(r"\A%YAML:1\.0[^\n]*\n(---[^\n]*\n)?", "\n", text)
+def parse_document(text: str, file: str) -> Section:
+    """The top mapping of a YAML, JSON or XML text; raises InvalidInput where there is none."""
     try:
-        content = yaml.load(text, Loader=_PlainLoader)
-    except yaml.MarkedYAMLError as error:
-        where = f" at line {error.problem_mark.line + 1}" if error.problem_mark else ""
-        raise InvalidInput(
-            f"{file}: is no YAML{where} ({one_line(error.problem)}); expected `key: value`"
-        ) from None
-    except (yaml.YAMLError, ValueError, OverflowError) as error:
-        raise InvalidInput(f"{file}: is no YAML ({one_line(error)}); expected `key: value`") from None
-    except RecursionError:
-        raise InvalidInput(f"{file}: is nested too deeply; expected `key: value`") from None
+        content = parse(text)
+    except Malformed as error:
+        raise InvalidInput(f"{file}: {one_line(error)}; expected `key: value`") from None
     if not isinstance(content, dict):
-        raise InvalidInput(f"{file}: is {shown(content)}; expected `key: value`")
+        raise InvalidInput(f"{file}: is no calibration known here but {shown(content)}; expected `key: ...`")
     return Section(file, "", content)
 
 
@@ -93,7 +83,7 @@ class Section:
 
     def fault(self, key: str, expected: str) -> InvalidInput:
         """The error of a key that is missing, or that is not what was expected."""
-        found = f"is {shown(self.values[key])}" if key in self.values else "is missing"
+        found = f"is {shown(_essence(self.values[key]))}" if key in self.values else "is missing"
         return InvalidInput(f"{self.at(key)} {found}; expected {expected}")
 
     def at(self, key: str) -> str:
@@ -113,6 +103,18 @@ class Section:
         if not isinstance(value, dict):
             raise self.fault(key, expected)
         return Section(self.file, f"{self.key}{key}.", value)
+
+    def section_of_list(self, key: str) -> Section:
+        """The list under `key` with its places as keys "0", "1", ...; empty where there is none."""
+        value = self.values.get(key)
+        items = value if isinstance(value, list) else []
+        return Section(self.file, f"{self.key}{key}.", {str(place): item for place, item in enumerate(items)})
+
+    def item(self, key: str, place: int, expected: str) -> Section:
+        """The mapping at `place` of the list under `key`."""
+        if not isinstance(self.values.get(key), list):
+            raise self.fault(key, f"a list with {expected}")
+        return self.section_of_list(key).section(str(place), expected)
 
     def text(self, key: str, expected: str) -> str:
         """The string under `key`."""
@@ -138,12 +140,39 @@ class Section:
             raise self.fault(key, expected)
         return numbers
 
-    def matrix(self, key: str, expected: str, rows: int, columns: int) -> FloatArray:
-        """The matrix [rows, columns] under `key`, a list of its rows."""
-        values = self.values.get(key)
-        if not isinstance(values, list) or len(values) != rows:
+    def array(self, key: str, expected: str, sizes: Collection[int]) -> FloatArray:
+        """The finite numbers under `key`, flat: a number, a list, a list of rows, or rows, cols and data."""
+        numbers = flat_numbers(self.values.get(key))
+        if numbers is None or len(numbers) not in sizes:
             raise self.fault(key, expected)
-        parts = Section(self.file, f"{self.key}{key}.", {str(row): value for row, value in enumerate(values)})
+        return np.array(numbers)
+
+    def matrix(self, key: str, expected: str, rows: int, columns: int) -> FloatArray:
+        """The matrix [rows, columns] under `key`: a list of its rows, a flat list, or rows, cols and data."""
+        value = self.values.get(key)
+        if isinstance(value, list) and any(isinstance(row, list) for row in value):
+            return self._rows(key, value, expected, rows, columns)
+        return self.array(key, expected, (rows * columns,)).reshape(rows, columns)
+
+    def rigid(self, key: str, expected: str) -> FloatArray:
+        """The rigid transformation [4, 4] under `key`, given as [R t; 0 0 0 1] or [R t]."""
+        value = self.values.get(key)
+        flat = flat_numbers(value)
+        if flat is not None and len(flat) == 12:
+            transform = np.vstack([np.reshape(flat, (3, 4)), [0, 0, 0, 1]])
+        else:
+            transform = self.matrix(key, f"{expected}, a 4x4 matrix [R t; 0 0 0 1]", 4, 4)
+        if not np.array_equal(transform[3], [0, 0, 0, 1]):
+            row = shown(transform[3].tolist())
+            raise InvalidInput(f"{self.at(key)} has the last row {row}; expected [0, 0, 0, 1]")
+        with blaming(self.at(key)):
+            transform[:3, :3] = checked_rotation(transform[:3, :3], "its 3x3 part")
+        return transform
+
+    def _rows(self, key: str, value: list[Any], expected: str, rows: int, columns: int) -> FloatArray:
+        if len(value) != rows:
+            raise self.fault(key, expected)
+        parts = Section(self.file, f"{self.key}{key}.", {str(row): line for row, line in enumerate(value)})
         row_expected = f"{columns} finite numbers, a row of {expected}"
         return np.array([parts.numbers(str(row), row_expected, columns) for row in range(rows)])
 
@@ -164,6 +193,22 @@ class Section:
             raise self.fault(key, f"the size {given[0]}x{given[1]} given beside the file")
         return stated
 
+    def sides(self, width: str, height: str, given: tuple[int, int] | None) -> tuple[int, int]:
+        """The image's (width, height) under two keys; `given` stands in where the file has neither."""
+        if width not in self and height not in self:
+            if given is None:
+                raise InvalidInput(
+                    f"{self.at(width)} is missing; expected it and {height}, or `size=` given beside the file"
+                )
+            return checked_size(given)
+        with blaming(f"{self.at(width)} and {height}"):
+            stated = checked_size([self.number(key, "whole pixels") for key in (width, height)])
+        if given is not None and checked_size(given) != stated:
+            raise InvalidInput(
+                f"{self.at(width)}: size is {stated}; expected {given} as given beside the file"
+            )
+        return stated
+
 
 def checked_size(size: Any) -> tuple[int, int]:
     """`size` as (width, height); raises InvalidInput for anything but two whole numbers of pixels."""
@@ -178,13 +223,41 @@ def checked_size(size: Any) -> tuple[int, int]:
 
 def finite_number(value: Any) -> float | None:
     """`value` as a float, or None where it is no finite number."""
-    if not isinstance(value, str | int | float):
+    if not isinstance(value, str | int | float) or isinstance(value, bool):
         return None
     try:
         number = float(value)
     except (ValueError, OverflowError):
         return None
     return number if math.isfinite(number) else None
+
+
+def flat_numbers(value: Any) -> list[float] | None:
+    """The numbers of a number, a list, a list of lists or a mapping with rows, cols and data; else None."""
+    if isinstance(value, dict):
+        return _matrix_numbers(value)
+    if not isinstance(value, list):
+        number = finite_number(value)
+        return None if number is None else [number]
+    if len(value) > MAX_NUMBERS:
+        return None
+    numbers: list[float] = []
+    for item in value:
+        parts = flat_numbers(item)
+        if parts is None:
+            return None
+        numbers += parts
+    return numbers
+
+
+def _matrix_numbers(matrix: Mapping[str, Any]) -> list[float] | None:
+    """OpenCV 5 writes a vector with `sizes`, all else has rows and columns; a list may be a bare string."""
+    data = matrix.get("data")
+    numbers = flat_numbers(data) if isinstance(data, list | str) else None
+    sides = [flat_numbers(matrix[key]) for key in ("sizes", "rows", "cols") if key in matrix]
+    if numbers is None or not sides or any(side is None for side in sides):
+        return None
+    return numbers if math.prod(n for side in sides for n in side or ()) == len(numbers) else None
 
 
 @contextmanager
@@ -200,6 +273,11 @@ def blaming(where: str) -> Iterator[None]:
         raise InvalidInput(f"{where}: {one_line(error)}") from None
 
 
+def _essence(value: Any) -> Any:
+    """Of a matrix with rows, cols and data what people look at, its numbers."""
+    return value["data"] if isinstance(value, dict) and "data" in value else value
+
+
 def shown(value: Any) -> str:
     """A value as an error shows it: one line, cut short."""
     return one_line(_SHORT.repr(value))
@@ -213,24 +291,3 @@ def one_line(message: Any) -> str:
 _SHORT = reprlib.Repr()
 _SHORT.maxstring = _SHORT.maxother = 40
 _SHORT.maxdict = 2
-
-_PLAIN_TAGS = {f"tag:yaml.org,2002:{kind}" for kind in ("str", "seq", "map", "int", "float", "null")}
-
-
-class _PlainLoader(yaml.BaseLoader):
-    """Strings, lists and mappings; no tags, no aliases, no key twice."""
-
-    def compose_node(self, parent: yaml.Node | None, index: Any) -> yaml.Node | None:
-        if self.check_event(yaml.AliasEvent):
-            raise yaml.MarkedYAMLError(problem="an alias", problem_mark=self.peek_event().start_mark)  # type: ignore[no-untyped-call]
-        node = super().compose_node(parent, index)
-        if node is not None and node.tag not in _PLAIN_TAGS:
-            raise yaml.MarkedYAMLError(problem=f"the tag {node.tag}", problem_mark=node.start_mark)
-        return node
-
-    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
-        keys = Counter(key.value for key, _ in node.value if isinstance(key, yaml.ScalarNode))
-        for key, count in keys.items():
-            if count > 1:
-                raise yaml.MarkedYAMLError(problem=f"the key {key} twice", problem_mark=node.start_mark)
-        return super().construct_mapping(node, deep)

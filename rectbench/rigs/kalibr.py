@@ -1,22 +1,34 @@
-"""Kalibr's `camchain.yaml`: two cameras, and T_cn_cnm1 from one to the next.
+"""Kalibr's `camchain.yaml`, and OpenVINS' `kalibr_imucam_chain.yaml`: cam0 (left), cam1 (right).
 
 The projections and their numbers are those of Kalibr's wiki, "Supported models" and "YAML formats".
+The pose is `T_cn_cnm1` of cam1, which takes points of cam0 to cam1; where that is missing, the two
+cameras' `T_cam_imu` (points of the IMU to the camera; OpenVINS may write its inverse, `T_imu_cam`).
+Of a longer chain any two cameras make a rig.
+Translations are metres, pixel (0, 0) is the centre of a pixel, there is no skew.
 """
 
 from __future__ import annotations
 
-import os
+import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from rectbench.cameras import Camera
+from rectbench.cameras.arrays import FloatArray
 from rectbench.errors import InvalidInput
-from rectbench.rigs.documents import Section, blaming, parse_yaml, shown
+from rectbench.rigs.documents import Section, blaming, shown
+from rectbench.rigs.formats import Given, RigFormat, assembled, inverse, single
+from rectbench.rigs.native import dump, replace_file
 from rectbench.rigs.rig import Rig
+from rectbench.rigs.sources import Source
 
 FOCAL = ("fx", "fy", "cx", "cy")
+RADTAN = ("k1", "k2", "p1", "p2")
+EQUI = ("k1", "k2", "k3", "k4")
 
 
 @dataclass(frozen=True)
@@ -28,36 +40,76 @@ class Layout:
     distortion: tuple[str, ...] = ()
 
 
+IMU_KEYS = ("T_cam_imu", "T_imu_cam")
+
 LAYOUTS = {
     ("pinhole", "none"): Layout("pinhole", FOCAL),
-    ("pinhole", "radtan"): Layout("pinhole", FOCAL, ("k1", "k2", "p1", "p2")),
-    ("pinhole", "equi"): Layout("kannala-brandt", FOCAL, ("k1", "k2", "k3", "k4")),
-    ("pinhole", "equidistant"): Layout("kannala-brandt", FOCAL, ("k1", "k2", "k3", "k4")),
+    ("pinhole", "radtan"): Layout("pinhole", FOCAL, RADTAN),
+    ("pinhole", "equi"): Layout("kannala-brandt", FOCAL, EQUI),
+    ("pinhole", "equidistant"): Layout("kannala-brandt", FOCAL, EQUI),
     ("pinhole", "fov"): Layout("field-of-view", FOCAL, ("omega",)),
     ("omni", "none"): Layout("unified", ("xi", *FOCAL)),
-    ("omni", "radtan"): Layout("unified", ("xi", *FOCAL), ("k1", "k2", "p1", "p2")),
+    ("omni", "radtan"): Layout("unified", ("xi", *FOCAL), RADTAN),
     ("ds", "none"): Layout("double-sphere", ("xi", "alpha", *FOCAL)),
     ("eucm", "none"): Layout("extended-unified", ("alpha", "beta", *FOCAL)),
 }
+"""What rectbench's models hold; `omni` with equi or fov, and `ds` and `eucm` with a distortion on top,
+are no camera that it has."""
 
 
-def read_kalibr(path: str | os.PathLike[str], text: str, size: tuple[int, int] | None = None) -> Rig:
-    """The rig of cam0 (left) and cam1 (right) in `text`, the content of the camchain `path`.
+def write_kalibr(rig: Rig, path: str | Path) -> None:
+    """Write `rig` as a camchain; raises InvalidInput for a lens that Kalibr has no model for."""
+    T = np.eye(4)
+    T[:3, :3], T[:3, 3] = rig.R_right_left, rig.t_right_left
+    cameras = {f"cam{number}": _camera_fields(camera) for number, camera in enumerate((rig.left, rig.right))}
+    cameras["cam1"] = {"T_cn_cnm1": T.tolist(), **cameras["cam1"]}
+    replace_file(Path(path), dump(cameras))
 
-    Further cameras of the chain are left out. `size` stands in for a missing `resolution`. Raises
-    InvalidInput in one line that names file, key and what was expected there.
-    """
-    chain = parse_yaml(text, str(path))
-    left = chain.section("cam0", "the first camera, the left one")
-    right = chain.section("cam1", "the second camera; a rig takes two")
-    cameras = (_read_camera(left, size), _read_camera(right, size))
-    T_right_left = right.matrix("T_cn_cnm1", "a 4x4 matrix [R t; 0 0 0 1] from cam0 to cam1, metres", 4, 4)
-    if not np.array_equal(T_right_left[3], [0, 0, 0, 1]):
-        raise InvalidInput(
-            f"{right.at('T_cn_cnm1.3')} is {shown(T_right_left[3].tolist())}; expected [0, 0, 0, 1]"
-        )
-    with blaming(right.at("T_cn_cnm1")):
-        return Rig(*cameras, T_right_left[:3, :3], T_right_left[:3, 3], name=Path(path).stem)
+
+def _recognises(source: Source) -> bool:
+    return any(re.fullmatch("cam[0-9]", key) for key in source.keys)
+
+
+def _read(sources: Sequence[Source], given: Given) -> Rig:
+    """The rig of cam0 (left) and cam1 (right), or of the two asked for; others are left out."""
+    chain = single(sources).document
+    names = _chosen(chain, given)
+    left = chain.section(names[0], "the first camera, the left one")
+    right = chain.section(names[1], "the second camera; a rig takes two")
+    left_camera, right_camera = _read_camera(left, given.size), _read_camera(right, given.size)
+    key, T = _read_pose(chain, *names)
+    return assembled(left_camera, right_camera, T, given, key, sources[0].name)
+
+
+def _chosen(chain: Section, given: Given) -> tuple[str, str]:
+    names = given.cameras or ("cam0", "cam1")
+    for name in names:
+        if given.cameras and (name not in chain or not re.fullmatch("cam[0-9]", name)):
+            known = ", ".join(key for key in chain.values if re.fullmatch("cam[0-9]", key))
+            raise InvalidInput(f"{chain.file}: has no camera {shown(name)}; expected two of {known}")
+    return names
+
+
+def _read_pose(chain: Section, left: str, right: str) -> tuple[str, FloatArray]:
+    """Where the pose is, and the transformation from the left camera to the right one."""
+    first, last = sorted((left, right))
+    links = [
+        chain.section(f"cam{place}", "a camera") for place in range(int(first[3:]) + 1, int(last[3:]) + 1)
+    ]
+    ends = [chain.section(name, "a camera") for name in (left, right)]
+    if all("T_cn_cnm1" not in link for link in links) and any(key in ends[1] for key in IMU_KEYS):
+        T_left_imu, T_right_imu = (_from_imu(end) for end in ends)
+        return f"{chain.at(left)} and {right}", T_right_imu @ inverse(T_left_imu)
+    T = np.eye(4)
+    for link in links:
+        T = link.rigid("T_cn_cnm1", "the pose from the camera before to this one, metres") @ T
+    return chain.at(f"{last}.T_cn_cnm1"), T if first == left else inverse(T)
+
+
+def _from_imu(camera: Section) -> FloatArray:
+    if "T_imu_cam" in camera and "T_cam_imu" not in camera:
+        return inverse(camera.rigid("T_imu_cam", "the pose from camera to IMU, metres"))
+    return camera.rigid("T_cam_imu", "the pose from IMU to camera, metres")
 
 
 def _read_camera(section: Section, size: tuple[int, int] | None) -> Camera:
@@ -80,3 +132,24 @@ def _read_camera(section: Section, size: tuple[int, int] | None) -> Camera:
 def _read_parameters(section: Section, key: str, names: tuple[str, ...]) -> dict[str, float]:
     numbers = section.numbers(key, f"{len(names)} finite numbers ({' '.join(names)})", len(names))
     return dict(zip(names, numbers, strict=True))
+
+
+def _camera_fields(camera: Camera) -> dict[str, Any]:
+    """The entries of a camera under the fullest layout that holds all its parameters."""
+    used = {name for name, value in camera.params.items() if value != 0}
+    for (projection, distortion), layout in LAYOUTS.items():
+        if layout.model == camera.model and used <= {*layout.intrinsics, *layout.distortion}:
+            return {
+                "camera_model": projection,
+                "intrinsics": [camera.params[name] for name in layout.intrinsics],
+                "distortion_model": distortion,
+                "distortion_coeffs": [camera.params[name] for name in layout.distortion],
+                "resolution": list(camera.size),
+            }
+    names = ", ".join(sorted(used))
+    raise InvalidInput(f"a {camera.model} camera with {names} has no Kalibr model; expected one that has")
+
+
+FORMAT = RigFormat(
+    "kalibr", "Kalibr camchain, OpenVINS kalibr_imucam_chain (YAML)", _recognises, _read, has_many=True
+)

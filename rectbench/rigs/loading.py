@@ -1,49 +1,115 @@
-"""`load_rig`: a calibration file of any kind that is read here, or a rig that ships with rectbench."""
+"""`load_rig`: a calibration of any format that is read here, or a rig that ships with rectbench."""
 
 from __future__ import annotations
 
+import logging
 import os
-import re
 from collections.abc import Sequence
+from dataclasses import replace
 from importlib import resources
 from importlib.resources.abc import Traversable
 from pathlib import Path
 
 from rectbench.errors import InvalidInput, Unavailable, UnknownName
-from rectbench.rigs.documents import checked_size, read_text
-from rectbench.rigs.kalibr import read_kalibr
-from rectbench.rigs.native import read_native
-from rectbench.rigs.opencv import read_opencv
+from rectbench.rigs import (
+    basalt,
+    boofcv,
+    camodocal,
+    colmap,
+    euroc,
+    kalibr,
+    kitti,
+    kitti360,
+    matlab,
+    middlebury,
+    mrcal,
+    native,
+    ocamcalib,
+    opencv,
+    orbslam,
+    pose,
+    ros,
+    stella,
+    vins,
+)
+from rectbench.rigs.documents import checked_size, one_line, shown
+from rectbench.rigs.formats import CameraFormat, Given, RigFormat, assembled, rig_of_views
 from rectbench.rigs.rig import Rig
+from rectbench.rigs.sources import Source, is_folder, sources_in
+
+log = logging.getLogger("rectbench.rigs")
 
 RigSource = str | os.PathLike[str]
 
+RIG_FORMATS: tuple[RigFormat, ...] = (
+    native.FORMAT,
+    colmap.FORMAT,
+    kitti360.FORMAT,
+    kitti.FORMAT,
+    middlebury.FORMAT,
+    kalibr.FORMAT,
+    basalt.FORMAT,
+    vins.FORMAT,
+    matlab.FORMAT,
+    boofcv.FORMAT,
+    orbslam.FORMAT,
+    stella.FORMAT,
+)
+"""Formats of whole rigs, asked in this order; what only one of them has comes first."""
 
-def load_rig(source: RigSource | Sequence[RigSource], size: tuple[int, int] | None = None) -> Rig:
-    """The rig in a calibration file, recognised by its content, or the built-in rig of that name.
+CAMERA_FORMATS: tuple[CameraFormat, ...] = (
+    mrcal.FORMAT,
+    ocamcalib.FORMAT,
+    camodocal.FORMAT,
+    ros.FORMAT,
+    euroc.FORMAT,
+    matlab.CAMERA_FORMAT,
+)
+"""Formats of single cameras, asked after those of rigs."""
+
+LAST: tuple[RigFormat, ...] = (opencv.FORMAT,)
+"""OpenCV's files have no mark of their own and share their keys with ROS, so they are asked last."""
+
+
+def load_rig(
+    source: RigSource | Sequence[RigSource],
+    size: tuple[int, int] | None = None,
+    unit: str | None = None,
+    cameras: Sequence[str] | None = None,
+) -> Rig:
+    """The rig in calibration files, recognised by their content, or the built-in rig of that name.
 
     Parameters
     ----------
     source : a path; or the name of a built-in rig (see `rig_names`; a file of that name is reached as
-        `./name`); or several paths of OpenCV files that complete each other, such as
-        `["intrinsics.yml", "extrinsics.yml"]`.
+        `./name`); or a folder that holds one rig's files; or several paths: files that complete each
+        other, such as `["intrinsics.yml", "extrinsics.yml"]`, or the left camera's, the right camera's
+        and, where these do not tell how they stand, a third with `R_right_left` and `t_right_left`
+        (or OpenCV's R and T).
     size : (width, height) in pixels, for files that leave the image size out, as OpenCV's samples do.
+    unit : what translations are in, "m", "cm", "mm", "in" or "ft", for files that do not tell; metres
+        where left out, and then a baseline beyond 10 m is an error.
+    cameras : names of the left and the right camera in a file with more than two: `["cam0", "cam3"]` of a
+        Kalibr chain or a Basalt calibration, two images of a COLMAP model. The first two where left out.
 
-    Formats: the project's own YAML (`rectbench.rigs.native`), Kalibr's camchain (`.kalibr`), OpenCV's
-    YAML, XML and JSON (`.opencv`). Translations are taken to be metres.
+    Formats: see `calibration_formats`; each has a module in `rectbench.rigs` that says what it reads. The
+    first camera of a file, or of a list, is the left one; cameras are never swapped, and a right camera on
+    the left is told in the log.
 
     Raises UnknownName for a name that no rig has, and InvalidInput in one line that names file, key
-    and what was expected for a file that holds no rig.
+    and what was expected for files that hold no rig.
     """
-    size = None if size is None else checked_size(size)
+    given = Given(None if size is None else checked_size(size), unit, _checked_cameras(cameras))
+    if isinstance(source, list | tuple) and len(source) == 1:
+        (source,) = source
     if isinstance(source, str | os.PathLike):
         if isinstance(source, str) and _may_be_name(source):
             return _built_in(source)
-        return _read([source], size)
+        return _with_order_told(_read([source], given))
     paths = list(source) if isinstance(source, Sequence) else []
     if not paths or not all(isinstance(path, str | os.PathLike) for path in paths):
         raise InvalidInput("a rig's files are an empty list or hold no paths; expected a list of paths")
-    return _read(paths, size)
+    return _with_order_told(_read(paths, given))
 
 
 def rig_names() -> tuple[str, ...]:
@@ -51,30 +117,103 @@ def rig_names() -> tuple[str, ...]:
     return tuple(sorted(_built_in_files()))
 
 
-def _read(paths: list[RigSource], size: tuple[int, int] | None) -> Rig:
-    documents = [(os.fspath(path), read_text(path)) for path in paths]
-    kinds = {_kind(path, text) for path, text in documents}
-    if kinds == {"opencv"}:
-        return read_opencv(documents, size)
-    path, text = documents[0]
-    if len(documents) > 1:
-        raise InvalidInput(
-            f"{path}: is read together with {documents[1][0]}; expected OpenCV files where there are several"
+def calibration_formats() -> dict[str, str]:
+    """The calibration formats that are read: name and what it is."""
+    return {format.name: format.title for format in _all_formats()}
+
+
+def _read(paths: list[RigSource], given: Given) -> Rig:
+    if len(paths) > 1 or not is_folder(paths[0]):
+        return _read_sources([Source.read(path) for path in paths], given)
+    folder = Path(paths[0])
+    sources = [source for source in sources_in(folder) if _is_known(source)]
+    if not sources:
+        raise InvalidInput(f"{folder}: holds no calibration known here; expected {_expected()}")
+    rig = _read_sources(sources, given)
+    return replace(rig, name=one_line(folder.resolve().name) or rig.name)
+
+
+def _read_sources(sources: list[Source], given: Given) -> Rig:
+    for format in RIG_FORMATS:
+        if any(format.recognises(source) for source in sources):
+            _check_choice(sources[0], format, given)
+            return format.read(sources, given)
+    if any(_camera_format(source) for source in sources):
+        return _read_cameras(sources, given)
+    for format in LAST:
+        if any(format.recognises(source) for source in sources):
+            return format.read(sources, given)
+    _ = [source.document for source in sources]  # what is damaged says so itself
+    raise InvalidInput(f"{sources[0].path}: is no calibration known here; expected {_expected()}")
+
+
+def _with_order_told(rig: Rig) -> Rig:
+    """The rig as it is, with a word in the log where its right camera stands on the left."""
+    x, y, z = rig.centre_right_in_left
+    if x < -max(abs(y), abs(z)):
+        log.warning(
+            "%s: the right camera stands %.3g m to the left of the left one; kept as the calibration has it, "
+            "to be named in the other order if that is not meant",
+            rig.name,
+            -x,
         )
-    return read_native(path, text, size) if kinds == {"native"} else read_kalibr(path, text, size)
+    return rig
 
 
-def _kind(path: str, text: str) -> str:
-    if re.search(r"^[\s{]*[\"']?rectbench_rig[\"']?\s*:", text, re.MULTILINE):
-        return "native"
-    if re.search(r"^[\s{]*[\"']?cam[0-9][\"']?\s*:", text, re.MULTILINE):
-        return "kalibr"
-    if text.lstrip().startswith(("%YAML", "<?xml", "<opencv_storage", "{")):
-        return "opencv"
-    raise InvalidInput(
-        f"{path}: is no calibration known here; expected the key rectbench_rig, Kalibr's cam0, "
-        "or OpenCV's %YAML:1.0, <?xml or { at the start"
-    )
+def _checked_cameras(cameras: Sequence[str] | None) -> tuple[str, str] | None:
+    if cameras is None:
+        return None
+    names = [] if isinstance(cameras, str) else list(cameras)
+    if len(names) != 2 or not all(isinstance(name, str) for name in names):
+        raise InvalidInput(
+            f"cameras is {shown(cameras)}; expected two names, the left and the right camera's"
+        )
+    return names[0], names[1]
+
+
+def _check_choice(source: Source, format: RigFormat, given: Given) -> None:
+    if given.cameras and not format.has_many:
+        raise InvalidInput(
+            f"{source.path}: is {format.name}, of two cameras; expected no `cameras=` {shown(given.cameras)}"
+        )
+
+
+def _read_cameras(sources: list[Source], given: Given) -> Rig:
+    """The rig of two files of a camera each and, perhaps, a third with their pose."""
+    views = [format.read(source, given) for source in sources if (format := _camera_format(source))]
+    others = [source for source in sources if not _camera_format(source)]
+    if len(views) != 2:
+        files = "a file" if len(views) == 1 else f"one of {len(views)} files"
+        raise InvalidInput(
+            f"{views[0].where}: is {files} with one camera; expected two of them, left and right"
+        )
+    if len(others) > 1 or not all(pose.recognises(other) for other in others):
+        raise InvalidInput(
+            f"{others[0].path}: is no pose; expected one file with R_right_left and t_right_left, or with "
+            "OpenCV's R and T, beside the files of two cameras"
+        )
+    left, right = views
+    name = sources[0].name
+    if not others:
+        return rig_of_views(views, given, name)
+    T_right_left = pose.read(others[0])
+    return assembled(left.camera, right.camera, T_right_left, given, others[0].path, name)
+
+
+def _camera_format(source: Source) -> CameraFormat | None:
+    return next((format for format in CAMERA_FORMATS if format.recognises(source)), None)
+
+
+def _is_known(source: Source) -> bool:
+    return any(format.recognises(source) for format in _all_formats()) or pose.recognises(source)
+
+
+def _all_formats() -> list[RigFormat | CameraFormat]:
+    return [*RIG_FORMATS, *CAMERA_FORMATS, *LAST]
+
+
+def _expected() -> str:
+    return f"one of {', '.join(calibration_formats())}"
 
 
 def _may_be_name(source: str) -> bool:
@@ -88,7 +227,7 @@ def _built_in(name: str) -> Rig:
     files = _built_in_files()
     if name not in files:
         raise UnknownName("rig", name, files)
-    return read_native(f"{name}.yaml", files[name].read_text(encoding="utf-8"))
+    return native.read_native(f"{name}.yaml", files[name].read_text(encoding="utf-8"))
 
 
 def _built_in_files() -> dict[str, Traversable]:

@@ -24,6 +24,7 @@ Axes are x right, y down, z forward. A rig that is written and read again is the
 from __future__ import annotations
 
 import os
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -31,11 +32,14 @@ import yaml
 
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
-from rectbench.rigs.documents import Section, blaming, parse_yaml
+from rectbench.rigs.documents import Section, blaming, parse_document
+from rectbench.rigs.formats import Given, RigFormat, assembled, rigid, single
 from rectbench.rigs.rig import Rig
 
 MARK = "rectbench_rig"
 VERSION = "1"
+LONGEST_MODEL = 40
+"""Characters; a longer name is damage, which an error need not repeat."""
 
 
 def read_native(path: str | os.PathLike[str], text: str, size: tuple[int, int] | None = None) -> Rig:
@@ -44,19 +48,22 @@ def read_native(path: str | os.PathLike[str], text: str, size: tuple[int, int] |
     `size` stands in for an image size that the file leaves out. Raises InvalidInput in one line
     that names file, key and what was expected there.
     """
-    document = parse_yaml(text, str(path))
+    return _read_rig(parse_document(text, str(path)), Given(size))
+
+
+def _read_rig(document: Section, given: Given) -> Rig:
     document.only((MARK, "name", "source", "cameras", "R_right_left", "t_right_left"))
     if document.text(MARK, f"the format's version, {VERSION}") != VERSION:
         raise document.fault(MARK, f"the format's version, {VERSION}")
-    name = document.text("name", "one printable line") if "name" in document else Path(path).stem
+    name = document.text("name", "one printable line") if "name" in document else Path(document.file).stem
     source = document.text("source", "prose") if "source" in document else ""
     cameras = document.section("cameras", "the cameras left and right")
     cameras.only(("left", "right"))
-    left, right = (_read_camera(cameras.section(side, "a camera"), size) for side in ("left", "right"))
+    left, right = (_read_camera(cameras.section(side, "a camera"), given.size) for side in ("left", "right"))
     R = document.matrix("R_right_left", "a 3x3 rotation", 3, 3)
     t = document.numbers("t_right_left", "three metres", 3)
-    with blaming(str(path)):
-        return Rig(left, right, R, t, name=name, source=source)  # type: ignore[arg-type]
+    rig = assembled(left, right, rigid(R, t), given, document.file, name, unit="m")
+    return replace(rig, source=source)
 
 
 def write_rig(rig: Rig, path: str | os.PathLike[str]) -> None:
@@ -67,12 +74,20 @@ def write_rig(rig: Rig, path: str | os.PathLike[str]) -> None:
     content["cameras"] = {"left": _camera_fields(rig.left), "right": _camera_fields(rig.right)}
     content["R_right_left"] = rig.R_right_left.tolist()
     content["t_right_left"] = rig.t_right_left.tolist()
-    _replace(Path(path), yaml.dump(content, Dumper=_Dumper, sort_keys=False, width=100, allow_unicode=True))
+    replace_file(Path(path), dump(content))
+
+
+def dump(content: Any) -> str:
+    """Plain data as YAML: blocks for mappings and matrices, a line for a list of numbers."""
+    text: str = yaml.dump(content, Dumper=_Dumper, sort_keys=False, width=100, allow_unicode=True)
+    return text
 
 
 def _read_camera(section: Section, size: tuple[int, int] | None) -> Camera:
     section.only(("model", "size", "params", "max_angle_deg"))
     model = section.text("model", "a projection model")
+    if len(model) > LONGEST_MODEL:
+        raise section.fault("model", "a projection model")
     params = section.section("params", "the model's parameters by name")
     values = {
         name: params.numbers(name, "finite numbers")
@@ -96,7 +111,8 @@ def _camera_fields(camera: Camera) -> dict[str, Any]:
     return fields
 
 
-def _replace(path: Path, text: str) -> None:
+def replace_file(path: Path, text: str) -> None:
+    """Write a text file, whole or not at all; what was there before stays until then."""
     temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
     try:
         try:
@@ -130,3 +146,11 @@ class _Dumper(yaml.SafeDumper):
 
 
 _Dumper.add_representer(str, _Dumper.represent_str)
+
+
+FORMAT = RigFormat(
+    "native",
+    "rectbench's own YAML",
+    lambda source: MARK in source.keys,
+    lambda sources, given: _read_rig(single(sources).document, given),
+)

@@ -6,6 +6,7 @@ from rectbench.warps.pinhole_view import HomographyRectifier, PinholeView
 from rectbench.warps.rectification import Rectification
 from rectbench.warps.rectifier import Images, Matches, Options, Problem, Rectifier, option, pose_problem
 from rectbench.warps.sampling import evaluation_pixels, outline_pixels
+from rectbench.warps.scaled import Scaled
 from rectbench.warps.targets import Cubic, Epipolar, Perspective, Profile, Radial, Target
 from rectbench.warps.warp import Warp
 
@@ -23,6 +24,7 @@ __all__ = [
     "Radial",
     "Rectification",
     "Rectifier",
+    "Scaled",
     "Target",
     "ViewAngles",
     "Warp",

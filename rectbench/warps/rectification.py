@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import cv2
@@ -15,6 +15,7 @@ from rectbench.cameras.projection import as_points
 from rectbench.errors import InvalidInput
 from rectbench.rigs import Rig
 from rectbench.warps.frame import rectifying_rotations, signed_baseline_m
+from rectbench.warps.scaled import Scaled
 from rectbench.warps.tables import FloatMap, lookup_table
 from rectbench.warps.targets import Target
 from rectbench.warps.warp import Warp
@@ -82,6 +83,21 @@ class Rectification:
         if side not in ("left", "right"):
             raise InvalidInput(f"side is {side!r}; expected 'left' or 'right'")
         return self.left if side == "left" else self.right
+
+    def scaled(self, factor: float) -> Rectification:
+        """The same images `factor` times as large (sizes rounded to whole pixels), see `Scaled`."""
+        try:
+            sides = [max(1, round(pixels * factor)) for pixels in self.size]
+        except (TypeError, ValueError, OverflowError):
+            sides = []
+        if not sides or factor <= 0:
+            raise InvalidInput(f"a rectification was scaled by {factor!r}; expected a finite number above 0")
+        size = sides[0], sides[1]
+        across, down = (new / old for new, old in zip(size, self.size, strict=True))
+        left, right = (
+            replace(warp, target=Scaled(warp.target, across, down)) for warp in (self.left, self.right)
+        )
+        return replace(self, left=left, right=right, size=size)
 
     def maps(self, side: Side) -> tuple[FloatMap, FloatMap]:
         """(map_x, map_y) [height, width] float32 for `cv2.remap`.

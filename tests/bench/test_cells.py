@@ -34,10 +34,10 @@ def test_a_slow_call_is_made_once() -> None:
 def test_all_methods_of_a_pair_are_misled_alike_and_never_told(store: Store) -> None:
     plan = make_plan(small_report(methods=("abraham", "conventional"), poses=("exact", "perturbed")))
     exact, _, first, second = plan.tasks
-    assert believed_rig(exact) == placed_rig(exact.pair)
-    assert believed_rig(first) == believed_rig(second) != placed_rig(first.pair)
+    assert believed_rig(exact, store) == placed_rig(exact.pair)
+    assert believed_rig(first, store) == believed_rig(second, store) != placed_rig(first.pair)
     problem = problem_of(first, store)
-    assert problem.rig == believed_rig(first)
+    assert problem.rig == believed_rig(first, store)
     assert problem.images is None
     # The matches of a calibrated method come from what is believed, not from what is true.
     rays_left, _ = problem.rig.left.unproject(problem.matches.left)
@@ -46,7 +46,7 @@ def test_all_methods_of_a_pair_are_misled_alike_and_never_told(store: Store) -> 
     assert np.abs(error).max() < 1e-9
 
 
-def test_random_numbers_hang_on_the_cell_alone() -> None:
+def test_random_numbers_hang_on_the_cell_alone(store: Store) -> None:
     few = make_plan(small_report(methods=("abraham",), poses=("perturbed",), seeds=(5,))).tasks[0]
     many = make_plan(
         small_report(
@@ -54,4 +54,4 @@ def test_random_numbers_hang_on_the_cell_alone() -> None:
         )
     ).tasks[-1]
     assert (few.cell.method, few.cell.seed) == (many.cell.method, many.cell.seed)
-    assert believed_rig(few) == believed_rig(many)
+    assert believed_rig(few, store) == believed_rig(many, store)

@@ -22,6 +22,10 @@ MODELS = (
     "equisolid",
     "stereographic",
     "orthographic",
+    "thin-prism-fisheye",
+    "fisheye624",
+    "cahvor",
+    "division",
 )
 
 
@@ -39,9 +43,9 @@ PARAMETERS = {
     | {name: within(-0.01, 0.01, 0) for name in ("p1", "p2", "s1", "s2", "s3", "s4")},
     "kannala-brandt": FOCAL
     | {"k1": within(-0.1, 0.1, 0), "k2": within(-0.05, 0.05, 0)}
-    | {"k3": within(-0.03, 0.03, 0), "k4": within(-0.01, 0.01, 0)},
+    | {"k3": within(-0.03, 0.03, 0), "k4": within(-0.01, 0.01, 0), "skew": within(-20, 20, 0)},
     "unified": FOCAL
-    | {"xi": within(-0.5, 3, 0, 1, 1 + 1e-9)}
+    | {"xi": within(-0.5, 3, 0, 1, 1 + 1e-9), "skew": within(-20, 20, 0)}
     | {name: within(-0.3, 0.3, 0) for name in ("k1", "k2")}
     | {name: within(-0.01, 0.01, 0) for name in ("p1", "p2")},
     "extended-unified": FOCAL | {"alpha": within(0, 1, 0, 0.5, 1), "beta": within(0.3, 3)},
@@ -51,6 +55,17 @@ PARAMETERS = {
     "equisolid": FOCAL,
     "stereographic": FOCAL,
     "orthographic": FOCAL,
+    "thin-prism-fisheye": FOCAL
+    | {"k1": within(-0.1, 0.1, 0), "k2": within(-0.05, 0.05, 0)}
+    | {"k3": within(-0.03, 0.03, 0), "k4": within(-0.01, 0.01, 0)}
+    | {name: within(-0.01, 0.01, 0) for name in ("p1", "p2", "sx1", "sy1")},
+    "fisheye624": FOCAL
+    | {"k0": within(-0.1, 0.1, 0), "k1": within(-0.05, 0.05, 0), "k2": within(-0.03, 0.03, 0)}
+    | {name: within(-0.01, 0.01, 0) for name in ("k3", "k4", "k5", "p0", "p1", "s0", "s1", "s2", "s3")},
+    "cahvor": FOCAL
+    | {name: within(-0.05, 0.05, 0) for name in ("alpha", "beta")}
+    | {"r0": within(-0.3, 0.3, 0), "r1": within(-0.3, 0.3, 0), "r2": within(-0.1, 0.1, 0)},
+    "division": FOCAL | {"k": within(-0.6, 0.3, 0, -1e-9, -0.25)},
 }
 
 

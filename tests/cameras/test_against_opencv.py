@@ -15,7 +15,7 @@ ZERO = np.zeros(3)
 
 def matrix(camera):
     p = camera.params
-    return np.array([[p["fx"], 0, p["cx"]], [0, p["fy"], p["cy"]], [0, 0, 1.0]])
+    return np.array([[p["fx"], p.get("skew", 0), p["cx"]], [0, p["fy"], p["cy"]], [0, 0, 1.0]])
 
 
 def coefficients(camera, names):
@@ -49,7 +49,12 @@ def test_kannala_brandt_is_fisheye_up_to_90_degrees(camera):
     rays = rays[rays[:, 2] > 1e-3]
     flat = rays.reshape(-1, 1, 3)
     expected = cv2.fisheye.projectPoints(
-        flat, ZERO, ZERO, matrix(camera), coefficients(camera, ["k1", "k2", "k3", "k4"])
+        flat,
+        ZERO,
+        ZERO,
+        matrix(camera),
+        coefficients(camera, ["k1", "k2", "k3", "k4"]),
+        alpha=camera.params["skew"] / camera.params["fx"],
     )[0]
     compare(camera, rays, expected)
 

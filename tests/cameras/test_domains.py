@@ -47,6 +47,17 @@ PHI = np.linspace(0, 6, 13)
         ("equisolid", {}, 180),
         ("stereographic", {}, 180),
         ("orthographic", {}, 90),
+        ("thin-prism-fisheye", {}, 180),
+        ("thin-prism-fisheye", {"k1": -0.1}, math.degrees(math.sqrt(1 / 0.3))),
+        ("fisheye624", {}, 180),
+        ("fisheye624", {"k0": -0.1}, math.degrees(math.sqrt(1 / 0.3))),
+        ("cahvor", {}, math.degrees(math.atan(1000))),
+        # bent slope 0.5 (1 + 3 (-0.15/0.5) r²) = 0
+        ("cahvor", {"r0": -0.5, "r1": -0.15}, math.degrees(math.atan(math.sqrt(1 / 0.9)))),
+        ("division", {}, 90),
+        ("division", {"k": -0.3}, 180),
+        # θ = atan2(r, 1 + k r²) stops rising at r = 1/sqrt(k)
+        ("division", {"k": 0.2}, math.degrees(math.atan(0.5 / math.sqrt(0.2)))),
     ],
 )
 def test_the_edge_is_where_theory_puts_it(model, params, edge_deg):
@@ -117,6 +128,33 @@ def test_thin_prism_terms_pull_the_edge_in_too():
     # 1 + 3 k1 r² - 2 |s| r = 0 along -s.
     fold = (-0.1 + math.sqrt(0.01 + 3.6)) / 1.8
     np.testing.assert_allclose(np.tan(edge_angle(prism, PHI)), fold, rtol=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("model", "terms"),
+    [
+        ("thin-prism-fisheye", {"p1": 0.06, "p2": -0.08}),
+        ("fisheye624", {"p1": 0.06, "p0": -0.08}),
+        # the prism terms' 2 |s| θ for the tangential ones' 6 |p| θ
+        ("thin-prism-fisheye", {"sx1": 0.18, "sy1": -0.24}),
+        ("fisheye624", {"s0": 0.18, "s2": -0.24}),
+    ],
+)
+def test_tangential_and_prism_terms_end_a_fisheye_where_they_fold_first(model, terms):
+    camera = Camera(model, SIZE, {**FOCAL, **terms})
+    # Slope along the direction that folds first: 1 - 6 |p| θ = 0.
+    np.testing.assert_allclose(edge_angle(camera, PHI), 1 / 0.6, rtol=1e-4)
+
+
+@pytest.mark.parametrize("model", ["thin-prism-fisheye", "fisheye624"])
+@settings(max_examples=30)
+@given(data=st.data())
+def test_no_two_rays_of_a_distorted_fisheye_share_a_pixel(model, data):
+    camera = data.draw(cameras(model))
+    rays = domain_rays(camera, per_direction=30, directions=16)
+    jacobian = camera.project_jacobian(rays)
+    area = np.einsum("ij,ij->i", np.cross(jacobian[:, 0], jacobian[:, 1]), rays)
+    assert (area[np.isfinite(area)] > 0).all()
 
 
 def test_a_rational_lens_ends_before_its_pole():

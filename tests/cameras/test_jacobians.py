@@ -75,7 +75,7 @@ def test_the_jacobian_of_unproject_is_that_of_finite_differences(model, data):
     assert (known & ~curved).sum() > 10
 
 
-@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("model", [model for model in MODELS if model != "cahvor"])  # its axis is another
 @settings(max_examples=20)
 @given(data=st.data())
 def test_on_the_axis_the_jacobian_is_the_focal_length_times_one_slope(model, data):
@@ -92,7 +92,8 @@ def test_on_the_axis_the_jacobian_is_the_focal_length_times_one_slope(model, dat
     else:
         slope = jacobian[0, 0] / camera.params["fx"]
         assert 0.2 < slope < 20
-        focal = slope * np.diag([camera.params["fx"], camera.params["fy"]])
+        fx, fy, skew = (camera.params.get(name, 0.0) for name in ("fx", "fy", "skew"))
+        focal = slope * np.array([[fx, skew], [0, fy]])
     np.testing.assert_allclose(jacobian[:, :2], focal, rtol=1e-9, atol=1e-7)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import zlib
+from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -18,7 +19,7 @@ from rectbench.rendering.truth import Truth
 from rectbench.reporting import Sources
 from rectbench.rigs import Rig
 from rectbench.warps import Rectification
-from rectbench.warps.targets import Epipolar, Perspective, Radial
+from rectbench.warps.targets import Cubic, Epipolar, Perspective, Radial
 
 METHODS = {
     "conventional": (0.62, 0.9, 0.61),
@@ -174,14 +175,33 @@ def fake_pair(rig: Rig) -> tuple[StereoPair, Truth]:
 
 
 def fake_rectification(rig: Rig, method: str) -> Rectification:
-    """Abraham's for most, a perspective one for those that make perspective images."""
+    """Abraham's for most, as cubics for the one with cubics; a perspective one where images are."""
     focal = float(rig.left.params["fx"])
     w, h = rig.left.size
     if method in ("conventional", "hartley", "fusiello"):
         target: Any = Perspective.from_focal(0.45 * focal, w / 2, h / 2)
         return Rectification.from_targets(rig, target, target, (w, h))
+    if method.startswith("local-homography"):
+        u, v = (Cubic(side / 2, focal, 0.0, 0.0, -1.5, 1.5) for side in (w, h))
+        return Rectification.from_targets(rig, Epipolar(u, v), Epipolar(u, v), (w, h))
     target = Epipolar(Radial("equidistant", focal, w / 2), Radial("equidistant", focal, h / 2))
     return Rectification.from_targets(rig, target, target, (w, h))
+
+
+@dataclass(frozen=True)
+class FakeCloud:
+    """What perfect matching would give of every fourth pixel."""
+
+    pair: StereoPair
+    truth: Truth
+
+    @property
+    def points(self) -> Any:
+        return np.where(self.truth.visible_left[..., None], self.truth.points_left, np.nan)[::2, ::2]
+
+    @property
+    def colours(self) -> Any:
+        return self.pair.left[::2, ::2]
 
 
 def fake_sources(width: int = 320) -> Sources:
@@ -192,4 +212,5 @@ def fake_sources(width: int = 320) -> Sources:
         pair=lambda result: pair,
         rectification=lambda result: fake_rectification(rig, result.method),
         distortion=lambda rect, rig, side, px: distortion(rect, rig, px).per_pixel[side],
+        reconstruction=lambda result: FakeCloud(*pair),
     )

@@ -112,15 +112,19 @@ def test_opencv_s_yaml_header_is_no_hindrance(path: Path) -> None:
     ("key", "value", "message"),
     [
         ("cam1", None, "cam1 is missing; expected the second camera; a rig takes two"),
-        ("cam1.T_cn_cnm1", None, "cam1.T_cn_cnm1 is missing; expected a 4x4 matrix [R t; 0 0 0 1]"),
+        (
+            "cam1.T_cn_cnm1",
+            None,
+            "cam1.T_cn_cnm1 is missing; expected the pose from the camera before to this one, metres, a 4x4",
+        ),
         ("cam1.T_cn_cnm1", np.eye(3).tolist(), "cam1.T_cn_cnm1 is [['1.0', "),
         ("cam1.T_cn_cnm1", np.eye(4).tolist(), "cam1.T_cn_cnm1: the baseline is zero"),
         (
             "cam1.T_cn_cnm1",
             (2 * np.eye(4)).tolist(),
-            "cam1.T_cn_cnm1.3 is [0.0, 0.0, 0.0, 2.0]; expected [0, 0, 0, 1]",
+            "cam1.T_cn_cnm1 has the last row [0.0, 0.0, 0.0, 2.0]; expected [0, 0, 0, 1]",
         ),
-        ("cam1.T_cn_cnm1", np.diag([1.0, 1, 2, 1]).tolist(), "cam1.T_cn_cnm1: R_right_left is no rotation"),
+        ("cam1.T_cn_cnm1", np.diag([1.0, 1, 2, 1]).tolist(), "cam1.T_cn_cnm1: its 3x3 part is no rotation"),
         (
             "cam0.camera_model",
             "fisheye",

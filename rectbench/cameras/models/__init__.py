@@ -1,29 +1,37 @@
 """The projection models, one a file; importing this package registers them all."""
 
 from rectbench.cameras.models import (
+    cahvor,
+    division,
     double_sphere,
     equidistant,
     equisolid,
     extended_unified,
     field_of_view,
+    fisheye624,
     kannala_brandt,
     ocam,
     orthographic,
     pinhole,
     stereographic,
+    thin_prism_fisheye,
     unified,
 )
 
 __all__ = [
+    "cahvor",
+    "division",
     "double_sphere",
     "equidistant",
     "equisolid",
     "extended_unified",
     "field_of_view",
+    "fisheye624",
     "kannala_brandt",
     "ocam",
     "orthographic",
     "pinhole",
     "stereographic",
+    "thin_prism_fisheye",
     "unified",
 ]

@@ -19,7 +19,7 @@ class KannalaBrandt(RadialLens):
     """r(θ) = θ + k1 θ³ + k2 θ⁵ + k3 θ⁷ + k4 θ⁹, valid while r rises."""
 
     name = "kannala-brandt"
-    parameters = (*FOCAL_PARAMETERS, "k1", "k2", "k3", "k4")
+    parameters = (*FOCAL_PARAMETERS, "k1", "k2", "k3", "k4", "skew")
 
     def derive(self, p: SimpleNamespace) -> dict[str, Any]:
         stretch = Polynomial([1.0, p.k1, p.k2, p.k3, p.k4])  # r/θ as a polynomial in θ²

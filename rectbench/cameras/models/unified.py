@@ -22,7 +22,7 @@ class Unified(Lens):
     """
 
     name = "unified"
-    parameters = (*FOCAL_PARAMETERS, "xi", "k1", "k2", "p1", "p2")
+    parameters = (*FOCAL_PARAMETERS, "xi", "k1", "k2", "p1", "p2", "skew")
     ranges: ClassVar = {**Lens.ranges, "xi": Interval(low=-1.0, low_open=True)}
 
     def derive(self, p: SimpleNamespace) -> dict[str, Any]:

@@ -1,0 +1,72 @@
+"""Photographs as they come, and the 8-bit grey that feature detectors take."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from rectbench.errors import InvalidInput
+from rectbench.warps import Images
+
+Grey = NDArray[np.uint8]
+
+BLACK_TO_WHITE = (0.1, 99.8)
+"""Percentiles that become black and white where an image is not of 8 bits: a 12-bit sensor fills a
+sixteenth of 16 bits, and a few glints must not darken all else."""
+
+
+def read_images(left: str | Path, right: str | Path) -> Images:
+    """Two image files as they are stored, grey or RGB(A), of any depth; InvalidInput for no image."""
+    return Images(_read(Path(left)), _read(Path(right)))
+
+
+def grey8(image: NDArray[np.generic], side: str = "") -> Grey:
+    """An image [H, W], or [H, W, C] of 1 to 4 channels (RGB, alpha last), as uint8 grey [H, W].
+
+    8-bit values stay what they are; of others the range that the image fills is stretched. `side`
+    names the image in the InvalidInput that another shape, or an image of no numbers, raises.
+    """
+    pixels = np.asarray(image)
+    name = f"the {side} image" if side else "the image"
+    channels = pixels.shape[2] if pixels.ndim == 3 else 1
+    if pixels.ndim not in (2, 3) or channels not in (1, 2, 3, 4) or not pixels.size:
+        raise InvalidInput(f"{name} has shape {pixels.shape}; expected [H, W] or [H, W, 1 to 4 channels]")
+    if pixels.dtype.kind not in "buif":
+        raise InvalidInput(f"{name} holds {pixels.dtype}; expected numbers")
+    if pixels.dtype != np.uint8:
+        pixels = pixels.astype(np.float32)
+    pixels = np.ascontiguousarray(pixels)
+    if channels >= 3:
+        grey = cv2.cvtColor(pixels, cv2.COLOR_RGB2GRAY if channels == 3 else cv2.COLOR_RGBA2GRAY)
+    else:
+        grey = pixels.reshape(*pixels.shape[:2], channels)[:, :, 0]
+    return _stretched(grey)
+
+
+def _stretched(grey: NDArray[Any]) -> Grey:
+    if grey.dtype == np.uint8:
+        return np.ascontiguousarray(grey)
+    finite = grey[np.isfinite(grey)]
+    black, white = np.percentile(finite, BLACK_TO_WHITE) if finite.size else (0.0, 0.0)
+    if not white > black:
+        return np.zeros(grey.shape, np.uint8)
+    levels = np.nan_to_num((grey - black) * (255 / (white - black)), posinf=255)
+    stretched: Grey = np.clip(np.rint(levels), 0, 255).astype(np.uint8)
+    return stretched
+
+
+def _read(path: Path) -> NDArray[np.generic]:
+    if not path.is_file():
+        raise InvalidInput(f"{path}: no such image")
+    image = cv2.imread(str(path), cv2.IMREAD_UNCHANGED)
+    if image is None:
+        raise InvalidInput(f"{path}: not an image that OpenCV can read")
+    if image.ndim == 3:
+        to_rgb = {3: cv2.COLOR_BGR2RGB, 4: cv2.COLOR_BGRA2RGBA}.get(image.shape[2])
+        image = image if to_rgb is None else cv2.cvtColor(image, to_rgb)
+    pixels: NDArray[np.generic] = image
+    return pixels

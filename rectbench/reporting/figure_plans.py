@@ -1,0 +1,235 @@
+"""Which figures a run has: what each shows, what it hangs on, how it is drawn."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from rectbench.reporting.bars import BarChart, bar_chart, draw_bars, pair_chart, stage_chart
+from rectbench.reporting.clouds import DPI, draw_clouds
+from rectbench.reporting.columns import PROTOCOLS, ROW_ERRORS, STAGES, column
+from rectbench.reporting.distortion_maps import draw_distortion_maps
+from rectbench.reporting.energy_curves import draw_energy
+from rectbench.reporting.figures import Plan
+from rectbench.reporting.rectified import PIXELS_PER_INCH, draw_rectified
+from rectbench.reporting.run_facts import stated_seconds, wanted_kinds
+from rectbench.reporting.run_folder import Result, Run
+from rectbench.reporting.scatter import draw_scatter, scatter
+from rectbench.reporting.sources import Sources
+from rectbench.reporting.squares import draw_squares
+from rectbench.reporting.starts import draw_starts, start_study, study_method
+from rectbench.reporting.tabulation import methods_part, named, slug
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+def planned_figures(run: Run, sources: Sources) -> list[Plan]:
+    """The figures of each part of the run that it asks for and has data for."""
+    return [plan for part in run.parts for plan in _part_plans(part, run, sources)]
+
+
+def _part_plans(part: Run, run: Run, sources: Sources) -> Iterator[Plan]:
+    kinds = wanted_kinds(part)
+    if methods := methods_part(part):
+        for kind in dict.fromkeys(kinds):
+            yield from _CHARTS[kind](methods) if kind in _CHARTS else ()
+        for rig in methods.rigs:
+            for picture in PICTURES:
+                if picture.kind in kinds and (results := _representative(methods, rig)):
+                    yield picture.plan(methods, sources, results)
+    if "starts" in kinds:
+        yield from _starts_plans(part, run)
+
+
+def _bar_plans(run: Run) -> Iterator[Plan]:
+    if run.group:
+        yield from _pair_bar_plans(run)
+        return
+    if "row_error_mean_px" in run.metrics:
+        for pose in run.noisy_poses:
+            chart = bar_chart(run, "row_error_mean_px", pose, reference=1.0)
+            caption = "Mean row error of true correspondences on each pair."
+            yield _bars(run, chart, slug("row-error", pose), f"Row error, {pose} pose", caption)
+    for key, caption in (
+        ("log_distortion", "Log distortion on each pair: free of scale, and what methods are ranked by."),
+        (
+            "distortion_native",
+            "The paper's distortion L on each pair, each method at its authors' own scale.",
+        ),
+        ("distortion_rescaled", "The same after the one scale of the image that is best for each method."),
+    ):
+        if key in run.metrics:
+            chart = bar_chart(run, key, run.geometric_pose)
+            yield _bars(run, chart, slug(key), column(key).heading.capitalize(), caption)
+
+
+def _pair_bar_plans(run: Run) -> Iterator[Plan]:
+    """Of a part: all ways to measure a thing side by side, its pairs along the axis."""
+    if any(key in run.metrics for key in ROW_ERRORS):
+        for pose in run.noisy_poses:
+            chart = pair_chart(run, "row error [px]", ROW_ERRORS, pose, reference=1.0)
+            name = named(run, "row-error", pose if len(run.noisy_poses) > 1 else "")
+            caption = "Mean row error on each pair, measured in the images and against the truth."
+            yield _bars(run, chart, name, f"Row error, {pose} pose", caption)
+    pose = run.geometric_pose
+    if any(key in run.metrics for key in PROTOCOLS):
+        chart = pair_chart(run, "distortion L", PROTOCOLS, pose)
+        caption = "The paper's distortion L on each pair, under each protocol."
+        yield _bars(run, chart, named(run, "distortion"), "Distortion by protocol", caption)
+    if "log_distortion" in run.metrics:
+        chart = pair_chart(run, "log distortion", {"log_distortion": ""}, pose)
+        caption = "Log distortion on each pair: free of scale, and what methods are ranked by."
+        yield _bars(run, chart, named(run, "log-distortion"), "Log distortion", caption)
+
+
+def _bars(run: Run, chart: BarChart, name: str, title: str, caption: str) -> Plan:
+    words = [caption]
+    if chart.reference is not None:
+        words.append(f"The dashed line is at {chart.reference:g} px.")
+    if len({r.seed for r in run.results}) > 1:
+        words.append("Bars are means over seeds, thin lines their range.")
+    if run.failures:
+        words.append("A cross marks a method that could not be measured there.")
+    return Plan(name, "bars", title, " ".join(words), chart, lambda: draw_bars(chart), part=run.group)
+
+
+def _scatter_plans(run: Run) -> Iterator[Plan]:
+    coverage = next((k for k in ("coverage_solid_angle", "coverage_pixels") if k in run.metrics), None)
+    measures = tuple(k for k in ("log_distortion", "distortion_rescaled") if k in run.metrics)
+    if coverage and measures:
+        data = scatter(run, coverage, measures)
+        yield Plan(
+            named(run, "distortion-coverage"),
+            "scatter",
+            "Distortion against coverage",
+            "Small: a pair. Large: the method's mean. Best is low and to the right: little distortion, and "
+            "the whole field of view kept.",
+            data,
+            lambda: draw_scatter(data),
+            part=run.group,
+        )
+
+
+def _timing_plans(run: Run) -> Iterator[Plan]:
+    if not any(key in run.metrics for key in STAGES):
+        return
+    stated = stated_seconds(run)
+    if stated:
+        stated["total"] = sum(stated.values())
+    chart = stage_chart(run, STAGES, stated)
+    caption = "Seconds of each stage, tables being part of the warp" + (
+        "; the lines are the paper's." if stated else "."
+    )
+    yield replace(_bars(run, chart, named(run, "timing"), "Time", caption), kind="timing")
+
+
+def _starts_plans(part: Run, run: Run) -> Iterator[Plan]:
+    study = start_study(part, run)
+    if study:
+        method = study_method(part)
+        yield Plan(
+            named(part, "starts"),
+            "starts",
+            "Random starts",
+            f"Where {method} ends from random starts: its distortion L there, relative to the one from its "
+            "default start. Above each pair: how many end at most 1 % above it. At the foot of the axis "
+            "stand those within 10⁻⁶ of it, and those below it.",
+            study,
+            lambda: draw_starts(study, method),
+            part=part.group,
+        )
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A figure that is made once a rig, from one representative pair."""
+
+    kind: str
+    stem: str
+    title: str
+    caption: str
+    draw: Callable[[Sources, tuple[Result, ...], Run], Figure]
+    dpi: int = 160
+    shown_as: str = "png"
+
+    def plan(self, run: Run, sources: Sources, results: tuple[Result, ...]) -> Plan:
+        """Its figure of the pair that the results are of."""
+        pair = results[0]
+        return Plan(
+            named(run, self.stem, pair.rig),
+            self.kind,
+            f"{self.title}, {pair.rig}",
+            f"Scene {pair.scene}, rig {pair.rig}, {pair.motion}, {pair.pose} pose. {self.caption}",
+            [[dict(r.row) for r in results], sources.version(pair)],
+            lambda: self.draw(sources, results, run),
+            dpi=self.dpi,
+            shown_as=self.shown_as,
+            part=run.group,
+        )
+
+
+PICTURES = (
+    Picture(
+        "pairs",
+        "rectified",
+        "Rectified pairs",
+        "Scan lines run through true correspondences (rings): on a rectified pair both rings lie on the "
+        "line, and both boxes between the dashed ones.",
+        lambda sources, results, run: draw_rectified(sources, results, run.methods),
+        dpi=PIXELS_PER_INCH,
+    ),
+    Picture(
+        "maps",
+        "distortion-map",
+        "Distortion maps",
+        "Native L of every pixel of both source images, one scale for all methods.",
+        lambda sources, results, run: draw_distortion_maps(sources, results, run.methods),
+    ),
+    Picture(
+        "squares",
+        "squares",
+        "Unit squares",
+        "Small squares of the left source image, and what each method makes of them where they land on its "
+        "output; the colour is the change of area S.",
+        lambda sources, results, run: draw_squares(sources, results, run.methods),
+        shown_as="svg",
+    ),
+    Picture(
+        "energy",
+        "energy",
+        "Energy about the fit",
+        "L over two coefficients with the others held (the left image's Ψᵤ, and Ψᵥ of both), and over each "
+        "alone. A change of 100 % turns the slope at the far end of the range by the mean slope. Hatched: "
+        "not convex; grey: rows or columns would change places.",
+        lambda sources, results, run: draw_energy(sources, results),
+        shown_as="svg",
+    ),
+    Picture(
+        "clouds",
+        "clouds",
+        "Reconstruction",
+        "Dense matches on the rectified pair, triangulated, in the left image's colours: the same two views "
+        "of all. The one from above leaves out what is well above the cameras.",
+        lambda sources, results, run: draw_clouds(sources, results, run.methods),
+        dpi=DPI,
+    ),
+)
+
+_CHARTS: dict[str, Callable[[Run], Iterator[Plan]]] = {
+    "bars": _bar_plans,
+    "scatter": _scatter_plans,
+    "timing": _timing_plans,
+}
+
+
+def _representative(run: Run, rig: str) -> tuple[Result, ...]:
+    """The results of the first pair of a rig that was measured at all."""
+    pose = run.noisy_poses[0]
+    candidates = run.select(rig=rig, pose=pose)
+    for pair in dict.fromkeys(r.pair for r in candidates):
+        results = run.select(candidates, pair=pair)
+        if any(r.ok for r in results):
+            return results
+    return ()

@@ -1,0 +1,107 @@
+"""A camera as CamOdoCal writes it, the camera files of VINS-Mono, VINS-Fusion and KITTI-360 (YAML).
+
+| model_type | numbers | here |
+|---|---|---|
+| PINHOLE | `projection_parameters` fx fy cx cy, `distortion_parameters` k1 k2 p1 p2 | pinhole |
+| PINHOLE_FULL | the same, with k3 to k6 | pinhole |
+| MEI | `mirror_parameters` xi, gamma1 gamma2 u0 v0, k1 k2 p1 p2 | unified |
+| KANNALA_BRANDT | mu mv u0 v0, k2 k3 k4 k5 of r = theta + k2 theta^3 + ... | kannala-brandt |
+| SCARAMUZZA | `poly_parameters`, `inv_poly_parameters`, `affine_parameters` ac ad ae cx cy | ocam |
+
+Pixel (0, 0) is the centre of a pixel. The file does not say where the camera stands.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from rectbench.cameras import Camera
+from rectbench.rigs.documents import Section, blaming
+from rectbench.rigs.formats import CameraFormat, Given, View
+from rectbench.rigs.ocamcalib import stretched
+from rectbench.rigs.sources import Source
+
+RADTAN = {name: name for name in ("k1", "k2", "p1", "p2")}
+PINHOLE = {name: name for name in ("fx", "fy", "cx", "cy")}
+RATIONAL = RADTAN | {name: name for name in ("k3", "k4", "k5", "k6")}
+MEI = {"gamma1": "fx", "gamma2": "fy", "u0": "cx", "v0": "cy"}
+KANNALA_BRANDT = {"mu": "fx", "mv": "fy", "u0": "cx", "v0": "cy"}
+KANNALA_BRANDT_RADIAL = {"k2": "k1", "k3": "k2", "k4": "k3", "k5": "k4"}
+MODELS = ("PINHOLE", "PINHOLE_FULL", "MEI", "KANNALA_BRANDT", "SCARAMUZZA")
+
+Lens = tuple[str, dict[str, Any]]
+"""A projection model and its parameters."""
+
+MAX_POLYNOMIAL = 20
+"""Coefficients of an inverse polynomial that CamOdoCal writes."""
+
+
+def read_view(source: Source, given: Given) -> View:
+    """The camera in the file; it does not tell its pose."""
+    file = source.document
+    kind = file.text("model_type", ", ".join(MODELS)).upper()
+    if kind not in MODELS:
+        raise file.fault("model_type", ", ".join(MODELS))
+    size = file.sides("image_width", "image_height", given.size)
+    model, params = READERS[kind](file)
+    with blaming(source.path):
+        return View(source.path, Camera(model, size, params))
+
+
+def _pinhole(file: Section) -> Lens:
+    params = _numbers(file, "projection_parameters", PINHOLE)
+    return "pinhole", params | _numbers(file, "distortion_parameters", RADTAN)
+
+
+def _pinhole_full(file: Section) -> Lens:
+    params = _numbers(file, "projection_parameters", PINHOLE)
+    return "pinhole", params | _numbers(file, "distortion_parameters", RATIONAL)
+
+
+def _mei(file: Section) -> Lens:
+    params = _numbers(file, "mirror_parameters", {"xi": "xi"})
+    params |= _numbers(file, "projection_parameters", MEI)
+    return "unified", params | _numbers(file, "distortion_parameters", RADTAN)
+
+
+def _kannala_brandt(file: Section) -> Lens:
+    # CamOdoCal puts all eight under projection_parameters; converters from Kalibr split them.
+    params = _numbers(file, "projection_parameters", KANNALA_BRANDT)
+    radial = "distortion_parameters" if "distortion_parameters" in file else "projection_parameters"
+    return "kannala-brandt", params | _numbers(file, radial, KANNALA_BRANDT_RADIAL)
+
+
+def _scaramuzza(file: Section) -> Lens:
+    affine = _numbers(file, "affine_parameters", {name: name for name in ("ac", "ad", "ae", "cx", "cy")})
+    stretch = ((affine["ac"], affine["ad"]), (affine["ae"], 1.0))
+    params = stretched(
+        stretch,
+        (affine["cx"], affine["cy"]),
+        _polynomial(file, "poly_parameters"),
+        _polynomial(file, "inv_poly_parameters") if "inv_poly_parameters" in file else (),
+        file.at("affine_parameters"),
+    )
+    return "ocam", params
+
+
+READERS = dict(zip(MODELS, (_pinhole, _pinhole_full, _mei, _kannala_brandt, _scaramuzza), strict=True))
+
+
+def _numbers(file: Section, key: str, names: Mapping[str, str]) -> dict[str, Any]:
+    section = file.section(key, f"the numbers {' '.join(names)}")
+    return {ours: section.number(theirs, "a number") for theirs, ours in names.items()}
+
+
+def _polynomial(file: Section, key: str) -> tuple[float, ...]:
+    section = file.section(key, "the coefficients p0, p1, ...")
+    count = max((place + 1 for place in range(MAX_POLYNOMIAL) if f"p{place}" in section), default=1)
+    return tuple(section.number(f"p{place}", "a coefficient") for place in range(count))
+
+
+FORMAT = CameraFormat(
+    "camodocal",
+    "CamOdoCal camera, as VINS and KITTI-360 use it (YAML; two files and a pose)",
+    lambda source: "model_type" in source.keys and "cam0_calib" not in source.keys,
+    read_view,
+)

@@ -1,0 +1,46 @@
+"""KITTI's `calib_cam_to_cam.txt` of the raw data: four cameras, before rectification.
+
+Lines `S_00: width height`, `K_00`, `D_00` (k1 k2 p1 p2 k3), `R_00` and `T_00` for each camera 00 to 03; R and
+T take points of camera 0 to that camera, in metres (the raw data's readme). Left and right are 00 and
+01, the grey cameras, unless others are asked for, such as 02 and 03. Pixel (0, 0) is the centre of a pixel.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+from rectbench.cameras import Camera
+from rectbench.rigs.documents import Section, blaming
+from rectbench.rigs.formats import Given, RigFormat, View, inverse, rig_of_views, rigid, single
+from rectbench.rigs.opencv import camera_matrix, lens_parameters
+from rectbench.rigs.rig import Rig, checked_rotation
+from rectbench.rigs.sources import Source
+
+
+def _read(sources: Sequence[Source], given: Given) -> Rig:
+    source = single(sources)
+    lines = (line.partition(":") for line in source.text.splitlines())
+    file = Section(source.path, "", {key.strip(): values.split() for key, _, values in lines})
+    names = given.cameras or ("00", "01")
+    return rig_of_views([_read_view(file, name, given) for name in names], given, source.name)
+
+
+def _read_view(file: Section, name: str, given: Given) -> View:
+    size = file.size(f"S_{name}", given.size)
+    params = camera_matrix(file, f"K_{name}", "pinhole")
+    params |= lens_parameters(file, f"D_{name}", "pinhole", (5,))
+    with blaming(file.at(f"K_{name}")):
+        camera = Camera("pinhole", size, params)
+    R = file.array(f"R_{name}", "a 3x3 rotation", (9,)).reshape(3, 3)
+    t = file.array(f"T_{name}", "three metres", (3,))
+    with blaming(file.at(f"R_{name}")):
+        T_camera_first = rigid(checked_rotation(R, "it"), t)
+    return View(file.at(f"R_{name}"), camera, inverse(T_camera_first))
+
+
+def _recognises(source: Source) -> bool:
+    return bool(re.search(r"(?m)^K_0\d:", source.head)) and bool(re.search(r"(?m)^T_0\d:", source.head))
+
+
+FORMAT = RigFormat("kitti", "KITTI raw calib_cam_to_cam.txt", _recognises, _read, has_many=True)

@@ -1,0 +1,151 @@
+"""ROS `camera_info` YAML, a file a camera, as camera_calibration_parsers or `topic echo` write it.
+
+K and D hold for the raw image. The pose is in the rectification that the two files share
+(sensor_msgs/CameraInfo): R turns the camera into the rectified frame, and P = [K' | K' o] has the
+place o of that frame in its last column, P[0, 3] = -fx' B for the right camera of a stereo pair: a
+point X of the pair's frame is R X_camera = X + o. Hence
+
+    R_right_left = R_right^T R_left,    t_right_left = R_right^T (o_right - o_left).
+
+Two files of cameras calibrated alone have P[:, 3] = 0; they want a third file with the pose.
+Translations are metres. plumb_bob, rational_polynomial and thin_prism_model are OpenCV's pinhole,
+equidistant and fisheye OpenCV's fisheye.
+"""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rectbench.cameras import Camera
+from rectbench.cameras.arrays import FloatArray
+from rectbench.errors import InvalidInput
+from rectbench.rigs.documents import Section, blaming
+from rectbench.rigs.formats import CameraFormat, Given, View, rigid
+from rectbench.rigs.native import dump, replace_file
+from rectbench.rigs.opencv import ORDERS, PINHOLE_COUNTS, camera_matrix, lens_parameters
+from rectbench.rigs.rig import Rig, checked_rotation
+from rectbench.rigs.sources import Source
+
+KEYS = {
+    "K": ("camera_matrix", "K", "k"),
+    "D": ("distortion_coefficients", "D", "d"),
+    "R": ("rectification_matrix", "R", "r"),
+    "P": ("projection_matrix", "P", "p"),
+}
+MODELS = {
+    "plumb_bob": "pinhole",
+    "rational_polynomial": "pinhole",
+    "thin_prism_model": "pinhole",
+    "equidistant": "fisheye",
+    "fisheye": "fisheye",
+    "kannala_brandt": "fisheye",
+}
+
+
+def read_view(source: Source, given: Given) -> View:
+    """The camera in the file and, where its projection matrix tells, its place in the rectified frame."""
+    file = source.document
+    kind = file.text("distortion_model", ", ".join(MODELS)) if "distortion_model" in file else "plumb_bob"
+    if kind not in MODELS:
+        raise file.fault("distortion_model", ", ".join(MODELS))
+    lens = MODELS[kind]
+    K, D = _key(file, "K"), _key(file, "D")
+    params = camera_matrix(file, K, lens)
+    params |= lens_parameters(file, D, lens, (0, 4) if lens == "fisheye" else (0, *PINHOLE_COUNTS))
+    width, height = ("image_width", "image_height") if "image_width" in file else ("width", "height")
+    size = file.sides(width, height, given.size)
+    with blaming(f"{file.at(K)}, {D}"):
+        camera = Camera("kannala-brandt" if lens == "fisheye" else "pinhole", size, params)
+    return View(source.path, camera, rectified_place(file, _key(file, "R"), _key(file, "P")))
+
+
+def rectified_place(file: Section, R_key: str, P_key: str) -> FloatArray | None:
+    """The pose from a camera to its pair's rectified frame, or None where the camera is in no pair."""
+    if P_key not in file or R_key not in file:
+        return None
+    P = file.array(P_key, "the 3x4 projection matrix", (12,)).reshape(3, 4)
+    R = file.array(R_key, "the 3x3 rectification matrix", (9,)).reshape(3, 3)
+    if not np.any(R):  # how an uncalibrated camera is published
+        return None
+    with blaming(file.at(R_key)):
+        R = checked_rotation(R, "it")
+    focal = P[[0, 1, 2], [0, 1, 2]]
+    if not (np.all(focal > 0) and focal[2] == 1):
+        raise InvalidInput(
+            f"{file.at(P_key)} has no focal length; expected [fx 0 cx Tx; 0 fy cy Ty; 0 0 1 0]"
+        )
+    with blaming(file.at(P_key)):
+        return rigid(R, -np.linalg.solve(P[:, :3], P[:, 3]))
+
+
+def _key(file: Section, what: str) -> str:
+    """The name that the file has for K, D, R or P."""
+    return next((key for key in KEYS[what] if key in file), KEYS[what][0])
+
+
+def _recognises(source: Source) -> bool:
+    keys = source.keys
+    is_info = "projection_matrix" in keys or {"rectification_matrix", "camera_matrix"} <= keys
+    is_message = "distortion_model" in keys and ({"K", "P"} <= keys or {"k", "p"} <= keys)
+    return is_info or is_message or {"distortion_model", "camera_matrix"} <= keys
+
+
+def write_ros(rig: Rig, left: str | os.PathLike[str], right: str | os.PathLike[str]) -> None:
+    """Write `rig` as two camera_info files, with a rectification R, P that holds its pose.
+
+    The rectified frame has x along the baseline and z as near to the left camera's as that leaves; P's focal
+    length is the smaller of the left camera's two. Raises InvalidInput for a lens that ROS has no name for.
+    """
+    R_rect_left = _along_baseline(rig.centre_right_in_left)
+    focal = min(rig.left.params.get("fx", 1.0), rig.left.params.get("fy", 1.0))
+    K = np.array([[focal, 0, (rig.left.width - 1) / 2], [0, focal, (rig.left.height - 1) / 2], [0, 0, 1]])
+    sides = (
+        (left, rig.left, R_rect_left, 0.0),
+        (right, rig.right, R_rect_left @ rig.R_right_left.T, rig.baseline_m),
+    )
+    for path, camera, R, baseline in sides:
+        P = np.c_[K, [-focal * baseline, 0, 0]]
+        replace_file(Path(path), dump(_info(camera, R, P, Path(path).stem)))
+
+
+def _along_baseline(centre: FloatArray) -> FloatArray:
+    x = centre / np.linalg.norm(centre)
+    z = np.array([0.0, 0.0, 1.0]) - x[2] * x
+    z = z if np.linalg.norm(z) > 1e-6 else np.array([1.0, 0.0, 0.0]) - x[0] * x
+    z /= np.linalg.norm(z)
+    return np.stack([x, np.cross(z, x), z])
+
+
+def _info(camera: Camera, R: FloatArray, P: FloatArray, name: str) -> dict[str, Any]:
+    lens = {"pinhole": "pinhole", "kannala-brandt": "fisheye"}.get(camera.model)
+    p = camera.params
+    if lens is None or p.get("skew", 0.0) != 0:
+        raise InvalidInput(
+            f"a {camera.model} camera, if not its skew, has no ROS distortion model; expected pinhole or "
+            "kannala-brandt without skew"
+        )
+    used = [p[key] for key in ORDERS[lens]]
+    count = 4 if lens == "fisheye" else next(n for n in (5, 8, 12) if not any(used[n:]))
+    model = {4: "equidistant", 5: "plumb_bob", 8: "rational_polynomial", 12: "thin_prism_model"}[count]
+    K = np.array([[p["fx"], 0, p["cx"]], [0, p["fy"], p["cy"]], [0, 0, 1]])
+    return {
+        "image_width": camera.width,
+        "image_height": camera.height,
+        "camera_name": name,
+        "camera_matrix": _matrix(K),
+        "distortion_model": model,
+        "distortion_coefficients": _matrix(np.array([used[:count]])),
+        "rectification_matrix": _matrix(R),
+        "projection_matrix": _matrix(P),
+    }
+
+
+def _matrix(matrix: FloatArray) -> dict[str, Any]:
+    return {"rows": matrix.shape[0], "cols": matrix.shape[1], "data": matrix.ravel().tolist()}
+
+
+FORMAT = CameraFormat("ros", "ROS camera_info (YAML; two files)", _recognises, read_view)

@@ -1,0 +1,62 @@
+"""stella_vslam's configuration with a `StereoRectifier`: K, D and R of two cameras before rectification.
+
+`R_left` and `R_right` turn the cameras into the rectified frame, as `cv2.stereoRectify` gives them, and
+`Camera.focal_x_baseline` is -P2[0][3], the rectified focal length times the baseline in metres. Hence
+
+    R_right_left = R_right^T R_left,    t_right_left = R_right^T (-focal_x_baseline / fx, 0, 0).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from rectbench.cameras import Camera
+from rectbench.cameras.arrays import FloatArray
+from rectbench.rigs.documents import Section, blaming
+from rectbench.rigs.formats import Given, RigFormat, View, rig_of_views, rigid, single
+from rectbench.rigs.opencv import CAMERA_MODELS, PINHOLE_COUNTS, camera_matrix, lens_parameters
+from rectbench.rigs.rig import Rig, checked_rotation
+from rectbench.rigs.sources import Source
+
+MODELS = {"perspective": "pinhole", "fisheye": "fisheye"}
+
+
+def _read(sources: Sequence[Source], given: Given) -> Rig:
+    file = single(sources).document
+    rectified = file.section("Camera", "the rectified camera")
+    size = rectified.sides("cols", "rows", given.size)
+    focal = rectified.number("fx", "pixels")
+    shift = rectified.number("focal_x_baseline", "pixels times metres")
+    if focal <= 0:
+        raise rectified.fault("fx", "pixels above 0")
+    rectifier = file.section("StereoRectifier", "K, D and R of both cameras")
+    left = _read_view(rectifier, "left", size, 0.0)
+    right = _read_view(rectifier, "right", size, shift / focal)
+    return rig_of_views((left, right), given, sources[0].name)
+
+
+def _read_view(rectifier: Section, side: str, size: tuple[int, int], baseline: float) -> View:
+    kind = rectifier.values.get("model", "perspective")
+    if kind not in MODELS:
+        raise rectifier.fault("model", "perspective or fisheye")
+    lens = MODELS[kind]
+    params = camera_matrix(rectifier, f"K_{side}", lens)
+    params |= lens_parameters(rectifier, f"D_{side}", lens, PINHOLE_COUNTS if lens == "pinhole" else (4,))
+    with blaming(rectifier.at(f"K_{side}")):
+        camera = Camera(CAMERA_MODELS[lens], size, params)
+    return View(rectifier.at(f"R_{side}"), camera, rectified_pose(rectifier, f"R_{side}", baseline))
+
+
+def rectified_pose(section: Section, key: str, baseline: float) -> FloatArray:
+    """The pose from a camera to the rectified frame of the left one, `baseline` to its left."""
+    R = section.array(key, "a 3x3 rotation", (9,)).reshape(3, 3)
+    with blaming(section.at(key)):
+        return rigid(checked_rotation(R, "it"), [baseline, 0.0, 0.0])
+
+
+FORMAT = RigFormat(
+    "stella",
+    "stella_vslam configuration with StereoRectifier (YAML)",
+    lambda source: "StereoRectifier" in source.keys,
+    _read,
+)

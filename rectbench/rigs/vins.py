@@ -1,0 +1,47 @@
+"""The configuration of VINS-Fusion, VINS-Fisheye and their kin: camera files and body_T_cam0, body_T_cam1.
+
+`body_T_cam0` takes points of camera 0 to the body (IMU), in metres, as the VINS-Fusion maintainers
+state it. `cam0_calib` and `cam1_calib` name the CamOdoCal files of the cameras, beside the configuration.
+VINS-Mono's own configuration holds one camera and is no rig.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from rectbench.errors import InvalidInput
+from rectbench.rigs import camodocal
+from rectbench.rigs.formats import Given, RigFormat, placed, rig_of_views
+from rectbench.rigs.rig import Rig
+from rectbench.rigs.sources import Source
+
+CAMERAS = ("cam0", "cam1")
+
+
+def _read(sources: Sequence[Source], given: Given) -> Rig:
+    configs = [source for source in sources if _recognises(source)]
+    if len(configs) > 1:
+        raise InvalidInput(
+            f"{configs[0].path}: is read together with {configs[1].path}; expected one of them"
+        )
+    config, file = configs[0], configs[0].document
+    views = []
+    for name in CAMERAS:
+        calibration = file.text(f"{name}_calib", "the name of the camera's file")
+        source = _named(calibration, sources) or config.beside(calibration)
+        T = file.rigid(f"body_T_{name}", "the pose from camera to body, metres")
+        views.append(placed(camodocal.read_view(source, given), T))
+    return rig_of_views(views, given, config.name)
+
+
+def _named(name: str, sources: Sequence[Source]) -> Source | None:
+    """The file of that name among those that the user gave."""
+    return next((source for source in sources if Path(source.path).name == Path(name).name), None)
+
+
+def _recognises(source: Source) -> bool:
+    return bool({"cam0_calib", "body_T_cam0"} & source.keys)
+
+
+FORMAT = RigFormat("vins", "VINS-Fusion configuration with its cameras' files (YAML)", _recognises, _read)
