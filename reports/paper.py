@@ -102,8 +102,8 @@ CLAIMS = (
         because={
             "held": "Its cubics are fitted to just this measure, on these pixels.",
             "depends": "Its L is the least where it is minimised, on the 500 pixels. How far below Abraham's "
-            "it is hangs on the scale of Abraham's image, which the paper leaves open; and distortion free of "
-            "scale is another thing.",
+            "it is hangs on the scale of Abraham's image, which the paper leaves open; and distortion free "
+            "of scale is another thing.",
             "not held": "Another method is as good on these pairs.",
             "not measured": "No pair could be measured.",
         },
