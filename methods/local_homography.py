@@ -38,7 +38,7 @@ class LocalHomography(rb.Rectifier):
         if options.columns == "shared":
             bounds = bounds._replace(gamma_left=bounds.gamma, gamma_right=bounds.gamma)
         energy = Energy(problem, options)
-        start = focal * starting_point(options)
+        start = focal * starting_point(options, problem.seed)
         if not np.isfinite(energy(start)[0]):
             raise rb.InvalidResult("the energy is infinite at the start: the view reaches an epipole")
         # The solver begins as if L were round; in these coordinates it nearly is.
@@ -70,7 +70,9 @@ class LocalHomography(rb.Rectifier):
         (v,) = place((rows,), (bounds.beta,))
         width = max(u_left(bounds.gamma_left.high), u_right(bounds.gamma_right.high)) + 0.5
         size = int(np.ceil(width)), int(np.ceil(v(bounds.beta.high) + 0.5))
-        notes = {"energy": float(found.fun), "iterations": float(found.nit)}
+        notes: dict[str, float | str] = {"energy": float(found.fun), "iterations": float(found.nit)}
+        if not found.success:
+            notes["warning"] = f"the minimisation ended early: {found.message}"
         return rb.Rectification.from_targets(
             problem.rig, rb.Epipolar(u_left, v), rb.Epipolar(u_right, v), size, notes
         )
@@ -119,12 +121,12 @@ class Energy:
         return np.linalg.inv(np.linalg.cholesky(curvature)).T
 
 
-def starting_point(options: LocalHomography.Options) -> np.ndarray:
+def starting_point(options: LocalHomography.Options, seed: int) -> np.ndarray:
     """Coefficients [9] in units of the source's centre resolution; random ones may even fall."""
     equidistant = np.tile([1.0, 0.0, 0.0], 3)
     if options.start == "equidistant":
         return equidistant
-    rng = np.random.default_rng(options.draw)
+    rng = np.random.default_rng([seed, options.draw])
     return equidistant * rng.uniform(0.2, 3.0, 9) + rng.normal(0.0, 0.3, 9)
 
 

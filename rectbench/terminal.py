@@ -125,7 +125,8 @@ def show_summary(folder: Path) -> None:
             heading = summary.headings[i]
             # On a narrow screen the headings are folded, never the numbers.
             widest = max(len(row[i].text) for row in summary.rows)
-            table.add_column(heading.text, justify="right" if heading.numeric else "left", min_width=widest)
+            side: Literal["left", "right"] = "right" if heading.numeric else "left"
+            table.add_column(Text(heading.text), justify=side, min_width=widest)  # [px] is no markup
         for row in summary.rows:
             table.add_row(*(Text(row[i].text, style="bold" if row[i].best else "") for i in shown))
         screen.print(table)

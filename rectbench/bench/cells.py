@@ -157,8 +157,11 @@ def _true_matches(pair: PairTask, store: Store) -> Matches:
 
 
 @lru_cache(maxsize=1)
-def _feature_matches(pair: PairTask, store: Store) -> Matches:
-    return scored_features(load_images(pair, store), placed_rig(pair))
+def _feature_matches(pair: PairTask, by_estimate: bool, store: Store) -> Matches:
+    """Freed of wrong matches by the true pose; or, as the paper frees its own, by the estimated one."""
+    rig = placed_rig(pair)
+    known = estimated_pose(pair, store).rig(rig) if by_estimate else rig
+    return scored_features(load_images(pair, store), known)
 
 
 @lru_cache(maxsize=1)
@@ -186,18 +189,18 @@ def _measured(task: CellTask, store: Store) -> Outcome:
 
 
 def _scores(task: CellTask, rectification: Rectification, store: Store) -> dict[str, float]:
-    pair, asked = task.pair, task.metrics
-    rig = placed_rig(pair)
+    pair, asked, by_estimate = task.pair, task.metrics, task.cell.pose == ESTIMATED
+    rig, with_features = placed_rig(pair), "row_error_features" in asked
     columns = measure(
         rectification,
         rig,
         geometry="geometry" in asked,
         true_matches=_true_matches(pair, store) if "row_error" in asked else None,
-        feature_matches=_feature_matches(pair, store) if "row_error_features" in asked else None,
+        feature_matches=_feature_matches(pair, by_estimate, store) if with_features else None,
     )
     if "distortion" in asked:
         columns |= distortion_columns(Jacobians.at(rectification))
-    if task.cell.pose == ESTIMATED:
+    if by_estimate:
         columns |= pose_columns(estimated_pose(pair, store), rig)
     if "energy" in asked:
         columns["energy_convex_share"] = energy_convex_share(rectification)
@@ -210,8 +213,9 @@ def _scores(task: CellTask, rectification: Rectification, store: Store) -> dict[
 
 @lru_cache(maxsize=1)
 def _pose_time(pair: PairTask, store: Store) -> float:
-    """Seconds from the two images to the pose."""
-    return timed(lambda: estimate_from_images(pair, store))[1]
+    """Seconds from the two images, in memory, to the pose."""
+    images = load_images(pair, store)
+    return timed(lambda: estimate_from_images(pair, images))[1]
 
 
 def _warp_times(rectification: Rectification) -> dict[str, float]:

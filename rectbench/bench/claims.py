@@ -1,9 +1,11 @@
 """Claims somebody made, and what the rows of a run say about them.
 
 A claim is stated before the run: which column, which method, against whom, and within which bounds it
-would hold. What is judged is the 95 % bootstrap interval of the measured value: wholly within the
-bounds it is held, wholly outside not held; anything else depends. A cell that failed keeps a
-statement from being held.
+would hold. What is judged is the 95 % bootstrap interval of the measured value over pairs, and over the
+seeds of each: wholly within the bounds it is held, wholly outside not held; anything else depends. A
+cell that failed keeps a statement from being held. Statements of one clause measure the same thing in
+several ways: where these disagree, the clause depends. A claim is held where each of its clauses is, and
+not held where one of them is not.
 """
 
 from __future__ import annotations
@@ -21,8 +23,6 @@ from rectbench.cameras.arrays import FloatArray
 
 Verdict = Literal["held", "not held", "depends", "not measured"]
 Row = Mapping[str, Any]
-Pair = tuple[str, str, str, str]
-"""Scene, rig, motion, pose."""
 
 RESAMPLES = 4000
 QUANTILES = (0.025, 0.975)
@@ -34,16 +34,18 @@ class Statement(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     label: str = Field(description="What is measured, under which protocol.")
+    clause: str = Field(default="", description="The part of the claim that it measures.")
     group: str = Field(default="", description="The part of the report it speaks of.")
     metric: str = Field(description="A column of the rows.")
     method: str
     options: Mapping[str, Any] = Field(default_factory=dict, description="Options its rows have, at least.")
     against: str | None = Field(default=None, description="The method it is compared with.")
+    rivals: tuple[str, ...] = Field(default=(), description="The methods to win against.")
     against_group: str | None = Field(default=None, description="Where that one's rows are, if elsewhere.")
     measure: Literal["value", "ratio", "wins", "share"] = Field(
         default="value",
         description="The mean; the geometric mean of the ratio to `against`; the number of pairs where "
-        "the method has the least value of its group; the share of cells whose ratio is within `within`.",
+        "the method has the least value of all `rivals`; the share of cells whose ratio is within `within`.",
     )
     within: tuple[float, float] | None = None
     above: float | None = Field(default=None, description="True where the quantity is at least this.")
@@ -53,6 +55,11 @@ class Statement(BaseModel):
     def _can_be_false(self) -> Statement:
         if self.above is None and self.below is None:
             raise ValueError(f"statement '{self.label}' has neither above nor below; expected a bound")
+        least, most = self.bounds
+        if not least <= most:
+            raise ValueError(f"statement '{self.label}' is true from {least} to {most}; expected a range")
+        if bool(self.rivals) != (self.measure == "wins"):
+            raise ValueError(f"statement '{self.label}' is a {self.measure}; `rivals` are for wins")
         if (self.against is None) != (self.measure in ("value", "wins")):
             raise ValueError(
                 f"statement '{self.label}' is a {self.measure}; `against` is for ratio and share"
@@ -93,6 +100,8 @@ class Measured:
     """What the rows say about one statement."""
 
     label: str
+    clause: str
+    """The part of the claim it measures; empty where the claim is one."""
     quantity: str
     """What the number is: a column, or a ratio of two methods' columns."""
     mean: float
@@ -129,34 +138,48 @@ def judged_claims(claims: Iterable[Claim | Mapping[str, Any]], rows: Sequence[Ro
 
 def _judged(claim: Claim, rows: Sequence[Row]) -> Judged:
     tests = tuple(_measured(statement, rows) for statement in claim.statements)
-    verdicts = {test.verdict for test in tests}
-    verdict: Verdict = verdicts.pop() if len(verdicts) == 1 else "depends"
+    clauses: dict[str, set[Verdict]] = {}
+    for statement, test in zip(claim.statements, tests, strict=True):
+        clauses.setdefault(statement.clause, set()).add(test.verdict)
+    verdicts = {verdicts.pop() if len(verdicts) == 1 else "depends" for verdicts in clauses.values()}
+    verdict: Verdict = "depends"
+    if len(verdicts) == 1:
+        (verdict,) = verdicts
+    elif "not held" in verdicts:
+        verdict = "not held"
     return Judged(claim.name, claim.says, verdict, claim.because.get(verdict, ""), tests)
 
 
 def _measured(statement: Statement, rows: Sequence[Row]) -> Measured:
     by_pair, failed = _numbers(statement, rows)
-    pairs = list(by_pair.values())
-    statistic = _STATISTICS[statement.measure]
+    cells = sum(map(len, by_pair))
     mean = low = high = math.nan
     verdict: Verdict = "not measured"
-    if pairs:
-        mean = float(statistic(pairs))
-        low, high = _interval(pairs, statistic, stratified=statement.measure == "wins")
+    if len(by_pair) >= _pairs_needed(statement):
+        mean = float(_statistic(statement)(_stacked(by_pair)))
+        low, high = _interval(by_pair, _statistic(statement)) if cells > 1 else (mean, mean)
         verdict = _verdict(statement, low, high, failed)
+    if cells == 1:  # one number has no interval
+        low = high = math.nan
     return Measured(
         label=statement.label,
+        clause=statement.clause,
         quantity=_quantity(statement),
         mean=mean,
         low=low,
         high=high,
         expected=statement.expected,
         verdict=verdict,
-        pairs_held=_pairs_held(statement, pairs),
-        pairs=len(pairs),
-        cells=sum(map(len, pairs)),
+        pairs_held=_pairs_held(statement, by_pair),
+        pairs=len(by_pair),
+        cells=cells,
         failed=failed,
     )
+
+
+def _pairs_needed(statement: Statement) -> float:
+    """Of how many pairs a statement speaks at least; a run of fewer does not measure it."""
+    return max(1.0, statement.above or 0.0) if statement.measure == "wins" else 1.0
 
 
 def _quantity(statement: Statement) -> str:
@@ -168,10 +191,12 @@ def _quantity(statement: Statement) -> str:
     return f"share of {ratio} in {statement.within}" if statement.measure == "share" else ratio
 
 
-def _numbers(statement: Statement, rows: Sequence[Row]) -> tuple[dict[Pair, FloatArray], int]:
-    """The numbers [cells, columns] a statement stands on, by pair, and how many cells have none."""
+def _numbers(statement: Statement, rows: Sequence[Row]) -> tuple[list[FloatArray], int]:
+    """The numbers [cells, columns] a statement stands on, one array a pair, and how many cells have none."""
+    if all(row.get(statement.metric) is None for row in rows):
+        return [], 0  # a column nobody asked for is no failure
     others = _others(statement, rows)
-    found: dict[Pair, list[list[float]]] = {}
+    found: dict[tuple[str, ...], list[list[float]]] = {}
     failed = 0
     for row in rows:
         if not _speaks_of(row, statement):
@@ -181,7 +206,7 @@ def _numbers(statement: Statement, rows: Sequence[Row]) -> tuple[dict[Pair, Floa
             found.setdefault(_place(row)[:4], []).append(numbers)
         else:
             failed += 1
-    return {pair: np.array(numbers) for pair, numbers in found.items()}, failed
+    return [np.array(numbers) for numbers in found.values()], failed
 
 
 def _numbers_of(row: Row, others: Sequence[Row], statement: Statement) -> list[float]:
@@ -189,7 +214,7 @@ def _numbers_of(row: Row, others: Sequence[Row], statement: Statement) -> list[f
     if statement.measure == "value":
         return [own]
     if statement.measure == "wins":
-        return [own, *rivals]
+        return [own, *(rivals if len(rivals) == len(statement.rivals) else [math.nan])]
     ratio = own / rivals[0] if len(rivals) == 1 and rivals[0] else math.nan
     if statement.measure == "share" and math.isfinite(ratio):
         low, high = statement.within or statement.bounds
@@ -207,12 +232,12 @@ def _speaks_of(row: Row, statement: Statement) -> bool:
 
 
 def _others(statement: Statement, rows: Sequence[Row]) -> dict[tuple[str, str, str, str, int], list[Row]]:
-    """The rows to compare with, by place: those of `against`, or of all the group's other methods."""
+    """The rows to compare with, by place: those of `against`, or of the rivals."""
     group = statement.group if statement.against_group is None else statement.against_group
     found: dict[tuple[str, str, str, str, int], list[Row]] = {}
     for row in rows:
         named = row["method"] == statement.against
-        rival = statement.measure == "wins" and row["method"] != statement.method
+        rival = row["method"] in statement.rivals and row["method"] != statement.method
         if (row.get("group") or "") == group and (named or rival):
             found.setdefault(_place(row), []).append(row)
     return found
@@ -228,41 +253,51 @@ def _value(row: Row, metric: str) -> float:
     return float(value) if row["status"] == "ok" and value is not None else math.nan
 
 
-Statistic = Callable[[Sequence[FloatArray]], FloatArray]
-"""From the numbers of each pair [..., cells, columns] to one number [...]."""
+Statistic = Callable[[FloatArray], FloatArray]
+"""From numbers [..., pairs, cells, columns], NaN where a pair has fewer cells, to one number [...]."""
 
 
-def _mean(pairs: Sequence[FloatArray]) -> FloatArray:
-    mean: FloatArray = np.concatenate(pairs, axis=-2).mean(axis=(-2, -1))
+def _mean(numbers: FloatArray) -> FloatArray:
+    """The mean over pairs of the mean over the cells of each."""
+    mean: FloatArray = np.nanmean(numbers[..., 0], axis=-1).mean(axis=-1)
     return mean
 
 
-def _geometric_mean(pairs: Sequence[FloatArray]) -> FloatArray:
-    mean: FloatArray = np.exp(_mean([np.log(values) for values in pairs]))
+def _geometric_mean(numbers: FloatArray) -> FloatArray:
+    mean: FloatArray = np.exp(_mean(np.log(numbers)))
     return mean
 
 
-def _wins(pairs: Sequence[FloatArray]) -> FloatArray:
+def _wins(numbers: FloatArray) -> FloatArray:
     """On how many pairs the first column has the least mean."""
-    won = [values.mean(axis=-2).argmin(axis=-1) == 0 for values in pairs]
-    count: FloatArray = np.sum(won, axis=0, dtype=np.float64)
+    won = np.nanmean(numbers, axis=-2).argmin(axis=-1) == 0
+    count: FloatArray = won.sum(axis=-1, dtype=np.float64)
     return count
 
 
-_STATISTICS: Mapping[str, Statistic] = {
-    "value": _mean,
-    "ratio": _geometric_mean,
-    "share": _mean,
-    "wins": _wins,
-}
+def _statistic(statement: Statement) -> Statistic:
+    return {"value": _mean, "ratio": _geometric_mean, "share": _mean, "wins": _wins}[statement.measure]
 
 
-def _interval(pairs: Sequence[FloatArray], statistic: Statistic, *, stratified: bool) -> tuple[float, float]:
-    """Percentiles of the statistic over resampled cells; `stratified` resamples those of each pair."""
-    rng = np.random.default_rng(0)
-    strata = pairs if stratified else [np.concatenate(pairs)]
-    drawn = [values[rng.integers(len(values), size=(RESAMPLES, len(values)))] for values in strata]
-    low, high = np.quantile(statistic(drawn), QUANTILES)
+def _stacked(by_pair: Sequence[FloatArray]) -> FloatArray:
+    """[pairs, cells, columns], NaN below the cells of a pair with fewer than the others."""
+    most = max(map(len, by_pair))
+    missing = [((0, most - len(numbers)), (0, 0)) for numbers in by_pair]
+    padded = [np.pad(n, space, constant_values=math.nan) for n, space in zip(by_pair, missing, strict=True)]
+    return np.stack(padded)
+
+
+def _interval(by_pair: Sequence[FloatArray], statistic: Statistic) -> tuple[float, float]:
+    """Percentiles of the statistic over resampled pairs, and resampled cells of each.
+
+    The seeds of a pair are no independent pairs: to draw from all cells alike would make intervals
+    narrower than they are.
+    """
+    rng, numbers = np.random.default_rng(0), _stacked(by_pair)
+    counts = np.array([len(numbers) for numbers in by_pair])
+    pairs = rng.integers(len(by_pair), size=(RESAMPLES, len(by_pair), 1))
+    cells = rng.random((RESAMPLES, *numbers.shape[:2])) * counts[pairs]
+    low, high = np.quantile(statistic(numbers[pairs, cells.astype(np.intp)]), QUANTILES)
     return float(low), float(high)
 
 
@@ -273,9 +308,9 @@ def _verdict(statement: Statement, low: float, high: float, failed: int) -> Verd
     return "held" if least <= low and high <= most and not failed else "depends"
 
 
-def _pairs_held(statement: Statement, pairs: Sequence[FloatArray]) -> int:
-    statistic = _STATISTICS[statement.measure]
+def _pairs_held(statement: Statement, by_pair: Sequence[FloatArray]) -> int:
+    each = [float(_statistic(statement)(numbers[None])) for numbers in by_pair]
     if statement.measure == "wins":
-        return round(float(statistic(pairs))) if pairs else 0
+        return round(sum(each))
     least, most = statement.bounds
-    return sum(least <= float(statistic([values])) <= most for values in pairs)
+    return sum(least <= value <= most for value in each)

@@ -14,6 +14,7 @@ from rectbench.bench.planning import PairTask
 from rectbench.bench.store import Store
 from rectbench.errors import PoseNotFound
 from rectbench.matching import PoseEstimate, pose_from_images
+from rectbench.rendering.images import StereoPair
 from rectbench.rigs import Rig
 from rectbench.warps import Images, Matches
 
@@ -23,9 +24,9 @@ ESTIMATING_PACKAGES = ("numpy", "scipy", "opencv-contrib-python-headless")
 NUMBERS, REASON = "pose.npz", "reason.json"
 
 
-def estimate_from_images(pair: PairTask, store: Store) -> PoseEstimate:
-    """The estimate, made anew from the stored images; raises PoseNotFound where they tell none."""
-    rig, images = placed_rig(pair), load_images(pair, store)
+def estimate_from_images(pair: PairTask, images: StereoPair) -> PoseEstimate:
+    """The estimate, made anew from the pair's images; raises PoseNotFound where they tell none."""
+    rig = placed_rig(pair)
     seed = derived_seed("consensus", pair.scene, pair.rig, pair.motion, pair.seed)
     # Of the true rig only the cameras are used: calibrations are known, the pose is not.
     return pose_from_images(rig.left, rig.right, Images(images.left, images.right), seed=seed)
@@ -42,7 +43,7 @@ def estimated_pose(pair: PairTask, store: Store) -> PoseEstimate:
         folder = store.read(POSES, inputs)
         if folder is None:
             try:
-                estimate = estimate_from_images(pair, store)
+                estimate = estimate_from_images(pair, load_images(pair, store))
             except PoseNotFound as failure:
                 reason = json.dumps({"reason": str(failure)})
                 store.write(POSES, inputs, lambda place: _write(place / REASON, reason))

@@ -1,4 +1,4 @@
-"""Feature matches of a rendered pair, freed of gross outliers by the true geometry, for scoring alone."""
+"""Feature matches of a rendered pair, freed of gross outliers by its geometry, for scoring alone."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from rectbench.rigs import Rig
 from rectbench.warps import Matches, centre_resolution_px
 
 FARTHEST_PX = 3.0
-"""A match farther from its true epipolar plane is a wrong match, not an imprecise one."""
+"""A match farther from its epipolar plane is a wrong match, not an imprecise one."""
 
 
 WORKING_PIXELS = 2_100_000
@@ -18,7 +18,7 @@ WORKING_PIXELS = 2_100_000
 
 
 def scored_features(images: StereoPair, rig: Rig) -> Matches:
-    """SIFT matches [N, 2] each within 3 px of the true rig's epipolar planes.
+    """SIFT matches [N, 2] each within 3 px of the rig's epipolar planes.
 
     The distance is the angle between the right ray and the plane of the left one, times the pixels
     per radian at the centre. A rectifier never sees these matches.

@@ -14,13 +14,15 @@ import importlib.util
 import inspect
 import sys
 import traceback
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 from types import ModuleType
 from typing import Any, Literal
 from xml.etree import ElementTree
+
+from pydantic import ValidationError
 
 from rectbench.bench.keys import digest, file_digest
 from rectbench.bench.report_spec import Report
@@ -256,8 +258,17 @@ def _clash(rivals: list[Plugin]) -> str:
 def _reason(error: BaseException) -> str:
     """One line: what went wrong, and on which line of the plugin."""
     text = " ".join(str(error).split())
+    if isinstance(error, ValidationError):  # of a report, whose own lines are not to blame
+        return "; ".join(map(_fault, error.errors(include_url=False)))
     if isinstance(error, InvalidInput | SyntaxError):
         return text if isinstance(error, InvalidInput) else f"SyntaxError: {text}"
     frames = traceback.extract_tb(error.__traceback__)
     where = f" (line {frames[-1].lineno} of {Path(frames[-1].filename).name})" if frames else ""
     return f"{type(error).__name__}: {text}{where}"
+
+
+def _fault(fault: Mapping[str, Any]) -> str:
+    """One of pydantic's faults in a line: the field, and what is wrong with it."""
+    field = ".".join(map(str, fault["loc"]))
+    text = " ".join(str(fault["msg"]).removeprefix("Value error, ").split())
+    return f"{field}: {text}" if field else text

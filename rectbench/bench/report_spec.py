@@ -113,7 +113,9 @@ class Report(BaseModel):
     timeout_s: float = Field(default=120.0, gt=0, description="After which a cell is stopped, seconds.")
     render_timeout_s: float = Field(default=1800.0, gt=0, description="The same for rendering one pair.")
     memory_gib: float = Field(default=4.0, gt=0, description="What one worker may allocate, GiB.")
-    figures: tuple[Figures, ...] | None = Field(default=None, description="Figures to draw; None draws all.")
+    figures: tuple[Figures, ...] | None = Field(
+        default=None, description="Figures to draw; None draws the usual ones."
+    )
 
     @model_validator(mode="after")
     def _is_one_grid_or_groups(self) -> Report:
@@ -129,6 +131,23 @@ class Report(BaseModel):
             missing = [name for name, values in grid.items() if not values]
             if missing:
                 raise ValueError(f"{missing[0]} are missing; expected at least one, or groups")
+        return self
+
+    @model_validator(mode="after")
+    def _claims_speak_of_what_there_is(self) -> Report:
+        methods = {part.name: part.methods for part in self.parts}
+        for statement in (s for claim in self.claims for s in claim.statements):
+            elsewhere = statement.group if statement.against_group is None else statement.against_group
+            rivals = (*statement.rivals, *([] if statement.against is None else [statement.against]))
+            spoken = [(statement.group, statement.method), *((elsewhere, rival) for rival in rivals)]
+            for group, method in spoken:
+                if group not in methods:
+                    raise ValueError(
+                        f"statement '{statement.label}' speaks of group '{group}', which is none"
+                    )
+                if method not in methods[group]:
+                    where = f"group '{group}'" if group else "the report"
+                    raise ValueError(f"statement '{statement.label}' speaks of {method}, which {where} lacks")
         return self
 
     @property
@@ -160,7 +179,7 @@ class Report(BaseModel):
         return self.metrics if part.metrics is None else part.metrics
 
     def figures_of(self, part: Group) -> tuple[Figures, ...] | None:
-        """The kinds of figures of a part; None draws all."""
+        """The kinds of figures of a part; None draws the usual ones."""
         return self.figures if part.figures is None else part.figures
 
     def seeds_of(self, part: Group) -> tuple[int, ...]:

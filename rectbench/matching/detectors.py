@@ -62,8 +62,8 @@ class Detector:
 
 def detector_named(name: str) -> Detector:
     """The detector of this name; UnknownName where there is none."""
-    if name not in _DETECTORS:
-        raise UnknownName("detector", name, _DETECTORS)
+    if not isinstance(name, str) or name not in _DETECTORS:
+        raise UnknownName("detector", str(name), _DETECTORS)
     return _DETECTORS[name]
 
 

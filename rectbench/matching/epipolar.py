@@ -56,6 +56,12 @@ class RayMatches:
         rays = (self.left, self.right, self.per_pixel_left, self.per_pixel_right)
         return RayMatches(pixels, *(array[kept] for array in rays))
 
+    @property
+    def rad_per_px(self) -> FloatArray:
+        """What a pixel of the right image spans [N], the root mean square over its directions."""
+        span: FloatArray = np.linalg.norm(self.per_pixel_right, axis=(1, 2)) / np.sqrt(2)
+        return span
+
     def mismatched(self, shift: int) -> RayMatches:
         """Wrong matches: the left pixel of each with the right pixel of another."""
         right = (
@@ -155,6 +161,13 @@ def meeting(pose: Pose, matches: RayMatches) -> Meeting:
     with np.errstate(divide="ignore", invalid="ignore"):
         inverse = np.where(along_left == 0, 0.0, square / along_left)
     return Meeting(inverse, (along_left > 0) & (along_right > 0), np.sqrt(square), (a * b).sum(axis=-1) > 0)
+
+
+def possible(pose: Pose, matches: RayMatches, limit_px: float) -> BoolArray:
+    """Whether each match [N] may be a point ahead of both cameras, one too far to tell included."""
+    meets = meeting(pose, matches)
+    mask: BoolArray = meets.ahead | (meets.alike & (meets.parallax <= limit_px * matches.rad_per_px))
+    return mask
 
 
 def tangents(direction: FloatArray) -> FloatArray:

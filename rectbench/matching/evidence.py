@@ -1,4 +1,4 @@
-"""What tells a pose from an accident: points ahead of both cameras, chance, and a turn alone."""
+"""What tells a pose from an accident: points ahead of both cameras, chance, a turn alone, no motion."""
 
 from __future__ import annotations
 
@@ -9,8 +9,9 @@ from scipy.stats import binom
 
 from rectbench.cameras.arrays import BoolArray, FloatArray
 from rectbench.errors import PoseNotFound
-from rectbench.matching.epipolar import Pose, RayMatches, essential, meeting, sampson_px
+from rectbench.matching.epipolar import Pose, RayMatches, essential, meeting, possible, sampson_px
 from rectbench.matching.robust import SAMPLE
+from rectbench.warps import Matches
 
 SIGNIFICANT_LOG10 = -3.0
 """A consensus that wrong matches would reach in one of a thousand image pairs is believed."""
@@ -18,9 +19,16 @@ CELLS = 8
 """Cells along the longer side of what the matches cover, of which each is one witness."""
 MISMATCHES = 20
 """Mismatched pairs made for each match, to measure how often a mismatch fits by chance."""
+PICKS = 5
+"""Times that a witness is drawn from each cell; the median decides."""
 NEIGHBOURS = 8
 SIMILAR = 0.15
 """Relative difference of the distances of two points on one surface."""
+STAYING = 0.9
+"""Of a photograph stored twice, or of two from one place, 93 % of the matches stay at least."""
+LEAST_STAYING = 8
+ORDERED = 0.5
+"""Share of the square displacements that a flow explains; of noise it is next to nothing."""
 TURN_STEPS = 10
 AHEAD_BY_CHANCE = 2 / 3
 """Share of points ahead, at most, where noise alone places them: the pose is fitted to that noise."""
@@ -29,36 +37,57 @@ MOST_BEHIND = 0.12
 """Share of points behind a camera up to which they count as accidents; of true poses 1 % is usual."""
 
 
-def possible(pose: Pose, matches: RayMatches, limit_px: float) -> BoolArray:
-    """Whether each match [N] may be a point ahead of both cameras, one too far to tell included."""
-    meets = meeting(pose, matches)
-    mask: BoolArray = meets.ahead | (meets.alike & (meets.parallax <= limit_px * _rad_per_px(matches)))
-    return mask
+def refuse_same_place(matches: Matches, pixel_px: float) -> None:
+    """Raise PoseNotFound where both images are of one camera that stood still: of [N, 2] matches, most stay.
+
+    They stay within `pixel_px`, and what is left has no order, as noise has none: the affine flow that
+    fits it best explains less than half. That of a far scene is even, or grows from the middle.
+    """
+    moved = matches.right - matches.left
+    stays = np.linalg.norm(moved, axis=1) < pixel_px
+    if stays.sum() <= max(STAYING * len(stays), LEAST_STAYING):
+        return
+    moved, places = moved[stays], np.c_[matches.left[stays], np.ones(stays.sum())]
+    flow = places @ np.linalg.lstsq(places, moved, rcond=None)[0]
+    if (flow**2).sum() <= ORDERED * (moved**2).sum():
+        raise PoseNotFound(
+            f"the two images show the same from the same place: {stays.sum()} of {len(stays)} matches stay "
+            "at their pixel; expected photographs from two places"
+        )
 
 
-def refuse_chance(pose: Pose, matches: RayMatches, limit_px: float) -> None:
+def refuse_chance(pose: Pose, matches: RayMatches, limit_px: float, seed: int) -> None:
     """Raise PoseNotFound where wrong matches alone would often reach as large a consensus.
 
     The number of false alarms of Moisan and Stival (IJCV 2004). The chance of a single wrong match to
     fit is measured, on pairs made of the left pixel of one match and the right pixel of another: features
     gather where there is texture, and fit more often than pixels spread evenly. Neighbours err together,
-    so of each cell of a grid only the clearest match counts.
+    so of each cell of a grid only one match counts, whichever is drawn: the median of several draws.
     """
-    matches, matrix = matches[_one_a_cell(matches.pixels.left)], essential(pose)
+    matrix, rng = essential(pose), np.random.default_rng(seed)
+    draws = [_alarms(matches[_one_a_cell(matches.pixels.left, rng)], matrix, limit_px) for _ in range(PICKS)]
+    log_alarms, agreeing, count = sorted(draws)[PICKS // 2]
+    if log_alarms > SIGNIFICANT_LOG10 * np.log(10):
+        raise PoseNotFound(
+            f"no pose stands out: the best explains {agreeing} of {count} matches in different places, which "
+            "wrong matches may do too; do the images overlap?"
+        )
+
+
+def _alarms(matches: RayMatches, matrix: FloatArray, limit_px: float) -> tuple[float, int, int]:
+    """log of the number of false alarms; how many of the matches fit E [3, 3], and how many there are."""
 
     def fitting(some: RayMatches) -> int:
         return int((np.abs(sampson_px(some.terms(), matrix)) <= limit_px).sum())
 
     count, agreeing = len(matches), fitting(matches)
+    if agreeing <= SAMPLE:
+        return np.inf, agreeing, count
     shifts = range(1, min(MISMATCHES + 1, count))
     by_chance = max(sum(fitting(matches.mismatched(shift)) for shift in shifts), 1) / len(shifts) / count
-    log_alarms = np.log(10.0 * max(count - SAMPLE, 1)) + _log_choices(count, agreeing)
+    log_alarms = np.log(10.0 * (count - SAMPLE)) + _log_choices(count, agreeing)
     log_alarms += _log_choices(agreeing, SAMPLE) + (agreeing - SAMPLE) * np.log(by_chance)
-    if agreeing <= SAMPLE or log_alarms > SIGNIFICANT_LOG10 * np.log(10):
-        raise PoseNotFound(
-            f"no pose stands out: the best explains {agreeing} of {count} matches in different places, which "
-            "wrong matches may do too; do the images overlap?"
-        )
+    return float(log_alarms), agreeing, count
 
 
 def refuse_turn(pose: Pose, matches: RayMatches, limit_px: float) -> None:
@@ -103,12 +132,13 @@ def _off_after_turn(R: FloatArray, matches: RayMatches, limit_px: float) -> Floa
     return off_px
 
 
-def _one_a_cell(pixels: FloatArray) -> BoolArray:
-    """The first of the pixels [N, 2] in each cell of a grid [N]."""
-    cells = np.floor(pixels / (np.ptp(pixels, axis=0).max() / CELLS + 1e-9))
+def _one_a_cell(pixels: FloatArray, rng: np.random.Generator) -> BoolArray:
+    """One of the pixels [N, 2] in each cell of a grid, any of them [N]."""
+    order = rng.permutation(len(pixels))
+    cells = np.floor(pixels[order] / (np.ptp(pixels, axis=0).max() / CELLS + 1e-9))
     _, first = np.unique(cells, axis=0, return_index=True)
     mask = np.zeros(len(pixels), bool)
-    mask[first] = True
+    mask[order[first]] = True
     return mask
 
 
@@ -129,13 +159,7 @@ def accompanied(pose: Pose, matches: RayMatches, limit_px: float) -> BoolArray:
         return np.ones(len(matches), bool)
     inverse = meeting(pose, matches).inverse_distance
     near = np.asarray(cKDTree(matches.left).query(matches.left, NEIGHBOURS + 1)[1])
-    tolerance = SIMILAR * np.abs(inverse) + limit_px * _rad_per_px(matches)
+    tolerance = SIMILAR * np.abs(inverse) + limit_px * matches.rad_per_px
     differences = np.abs(inverse[near[:, 1:]] - inverse[:, None])
     similar: BoolArray = np.any(differences <= tolerance[:, None], axis=1)
     return similar if 2 * similar.sum() >= len(matches) else np.ones(len(matches), bool)
-
-
-def _rad_per_px(matches: RayMatches) -> FloatArray:
-    """What a pixel of the right image spans [N], the root mean square over its directions."""
-    span: FloatArray = np.linalg.norm(matches.per_pixel_right, axis=(1, 2)) / np.sqrt(2)
-    return span

@@ -18,6 +18,8 @@ from rectbench.cameras.arrays import FloatArray
 POLISHING_STEPS = 4
 REAL = 1e-3
 """An eigenvalue with a larger imaginary share stands for no real solution."""
+RIDGE = 1e-13
+"""Share of its trace that makes the normal matrix of a degenerate sample invertible."""
 SOLVED = 1e-9
 """Left of the constraints where a solution has been polished; it is 1e-15 as a rule."""
 
@@ -103,6 +105,8 @@ def _polished(coordinates: FloatArray, constraints: FloatArray) -> tuple[FloatAr
         transposed = np.swapaxes(jacobian, 1, 2)
         # The constraints are homogeneous: J has no say along the solution itself, its square fills in.
         normal = transposed @ jacobian + coordinates[:, :, None] * coordinates[:, None, :]
+        trace = np.trace(normal, axis1=1, axis2=2)
+        normal += RIDGE * trace[:, None, None] * np.eye(4)
         step = np.linalg.solve(normal, -transposed @ residual)[..., 0]
         coordinates = coordinates + step
         coordinates /= np.linalg.norm(coordinates, axis=1, keepdims=True)

@@ -81,7 +81,7 @@ def matcher_named(matcher: str | Matcher) -> Matcher:
     """The matcher of a name, or the callable itself; raises UnknownName."""
     if callable(matcher):
         return matcher
-    if matcher not in MATCHERS:
+    if not isinstance(matcher, str) or matcher not in MATCHERS:
         raise UnknownName("matcher", str(matcher), MATCHERS)
     return MATCHERS[matcher]
 

@@ -20,8 +20,22 @@ from rectbench.cameras import Camera
 from rectbench.cameras.arrays import FloatArray
 from rectbench.errors import InvalidInput, PoseNotFound
 from rectbench.matching.bundle import adjusted
-from rectbench.matching.epipolar import Pose, RayMatches, decomposed, essential, sampson_px, tangents
-from rectbench.matching.evidence import accompanied, possible, refuse_behind, refuse_chance, refuse_turn
+from rectbench.matching.epipolar import (
+    Pose,
+    RayMatches,
+    decomposed,
+    essential,
+    possible,
+    sampson_px,
+    tangents,
+)
+from rectbench.matching.evidence import (
+    accompanied,
+    refuse_behind,
+    refuse_chance,
+    refuse_same_place,
+    refuse_turn,
+)
 from rectbench.matching.features import RATIO, match_features
 from rectbench.matching.robust import consensus, deviation, locally_optimised
 from rectbench.rigs import Rig
@@ -157,6 +171,7 @@ def pose_from_images(
     features_s = perf_counter() - start
     area = max(left.width * left.height, right.width * right.height)
     reduction = 1.0 if working_pixels is None else max(1.0, np.sqrt(area / working_pixels))
+    refuse_same_place(matches, reduction)
     found = relative_pose(left, right, matches, threshold_px=THRESHOLD_PX * reduction, seed=seed)
     return replace(found, seconds=MappingProxyType({"features": features_s, **found.seconds}))
 
@@ -168,13 +183,17 @@ def relative_pose(
 
     RANSAC over five-point samples, bundle adjustment over the consensus, and the tests that tell a
     pose from an accident. `threshold_px` is a Sampson distance in source pixels beyond which a match
-    is wrong; below, the noise is measured. Raises PoseNotFound with the reason.
+    is wrong; below, the noise is measured. The order of the matches means nothing. Raises InvalidInput
+    for arrays that are no matches; PoseNotFound with the reason.
     """
+    shapes = [np.shape(pixels) for pixels in matches]
+    if shapes[0] != shapes[1] or len(shapes[0]) != 2 or shapes[0][1] != 2:
+        raise InvalidInput(f"matches of shapes {shapes[0]} and {shapes[1]}; expected the same [N, 2] twice")
     start, given = perf_counter(), len(matches.left)
     seen, _ = RayMatches.of(left, right, matches)
     _refuse_few(len(seen), given)
     pose, limit_px = _narrowed(consensus(seen, threshold_px, seed), seen, threshold_px)
-    refuse_chance(pose, seen, limit_px)
+    refuse_chance(pose, seen, limit_px, seed)
     fitting = seen[np.abs(sampson_px(seen.terms(), essential(pose))[0]) <= limit_px]
     pose = max(decomposed(essential(pose)), key=lambda one: int(possible(one, fitting, limit_px).sum()))
     ahead = fitting[possible(pose, fitting, limit_px)]

@@ -17,6 +17,7 @@ from rectbench.matching.epipolar import (
     decomposed,
     essential,
     essential_slopes,
+    possible,
     sampson_px,
 )
 from rectbench.matching.five_point import essential_matrices
@@ -43,9 +44,11 @@ TO_DEVIATION = 1.4826
 
 
 def consensus(matches: RayMatches, limit_px: float, seed: int) -> Pose:
-    """The pose, one of four with its essential matrix, that at least 8 matches agree on best.
+    """The pose that at least 8 matches agree on best, as points ahead of both cameras.
 
-    `limit_px` is the Sampson distance in source pixels from which a match counts as wrong.
+    `limit_px` is the Sampson distance in source pixels from which a match counts as wrong. Two essential
+    matrices fit a plane equally well; of one, many points lie behind a camera as a rule. Where both have
+    all of them ahead, as when nearing a plane, only the noise decides.
     """
     terms, rng = matches.terms(), np.random.default_rng(seed)
     best, least, drawn, needed = Pose(np.eye(3), np.array([1.0, 0.0, 0.0])), np.inf, 0, float(LEAST_SAMPLES)
@@ -56,10 +59,14 @@ def consensus(matches: RayMatches, limit_px: float, seed: int) -> Pose:
         for i in np.argsort(costs)[:LOCALLY_OPTIMISED]:
             pose = locally_optimised(decomposed(candidates[i])[0], terms, limit_px)
             distances = sampson_px(terms, essential(pose))
-            cost = float(_cost(distances, limit_px)[0])
-            if cost < least:
-                best, least = pose, cost
-                share = float((np.abs(distances) < limit_px).mean())
+            if _cost(distances, limit_px)[0] >= least:
+                continue
+            poses = decomposed(essential(pose))
+            explained = np.where([possible(one, matches, limit_px) for one in poses], distances, limit_px)
+            costs_ahead = _cost(explained, limit_px)
+            if costs_ahead.min() < least:
+                best, least = poses[costs_ahead.argmin()], float(costs_ahead.min())
+                share = float((np.abs(explained[costs_ahead.argmin()]) < limit_px).mean())
                 needed = max(LEAST_SAMPLES, np.log1p(-CONFIDENCE) / np.log1p(-min(share**SAMPLE, 1 - 1e-12)))
         drawn += BATCH
     return best

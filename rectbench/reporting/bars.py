@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 import textwrap
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import product
 from typing import TYPE_CHECKING
@@ -46,6 +46,8 @@ class BarChart:
     panels: Mapping[str, Mapping[str, Mapping[str, Bar]]]
     stated: Mapping[str, float] = field(default_factory=dict)
     """Values that somebody else states, by group."""
+    linear: frozenset[str] = frozenset()
+    """Panels with an axis of their own, linear from 0: of values that are bounded."""
 
 
 def bar_chart(run: Run, key: str, pose: str, reference: float | None = None) -> BarChart:
@@ -75,13 +77,22 @@ def bar_chart(run: Run, key: str, pose: str, reference: float | None = None) -> 
 
 
 def pair_chart(
-    run: Run, label: str, titles: Mapping[str, str], pose: str, reference: float | None = None
+    run: Run,
+    label: str,
+    titles: Mapping[str, str],
+    pose: str,
+    *,
+    reference: float | None = None,
+    bounded: Collection[str] = (),
 ) -> BarChart:
-    """The bars of metrics of one kind side by side; `titles` names the panel of each column."""
+    """The bars of metrics of one kind side by side; `titles` names the panel of each column.
+
+    The panels of `bounded` columns stand last and have a linear axis of their own.
+    """
     labels = pair_labels(run)
     results = run.select(pose=pose)
     panels: dict[str, dict[str, dict[str, Bar]]] = {}
-    for key, title in titles.items():
+    for key, title in sorted(titles.items(), key=lambda item: item[0] in bounded):
         if key in run.metrics:
             panels[title] = {
                 label: {
@@ -91,7 +102,10 @@ def pair_chart(
                 for place, label in labels.items()
             }
     floor = max(column(key).floor for key in titles)
-    return BarChart(label, floor, reference, run.methods, panels)
+    linear = frozenset(titles[key] for key in bounded if titles[key] in panels)
+    if len(linear) == len(panels):
+        linear = frozenset()  # no others to set them apart from
+    return BarChart(label, floor, reference, run.methods, panels, linear=linear)
 
 
 def stage_chart(run: Run, stages: Mapping[str, str], stated: Mapping[str, float]) -> BarChart:
@@ -121,7 +135,7 @@ def _bar(results: Sequence[Result], key: str, scale: float) -> Bar:
 
 
 def draw_bars(chart: BarChart) -> Figure:
-    """Draw the chart: shared vertical axis, a cross with the status where a bar is missing."""
+    """Draw the chart: shared vertical axis but for linear panels, a cross where a bar is missing."""
     from matplotlib.figure import Figure
 
     groups = max(len(panel) for panel in chart.panels.values())
@@ -134,13 +148,13 @@ def draw_bars(chart: BarChart) -> Figure:
     columns = math.ceil(len(chart.panels) / math.ceil(len(chart.panels) / columns))
     rows = math.ceil(len(chart.panels) / columns)
     figure = Figure(figsize=(width, 0.45 + 1.45 * rows + (0.18 if small else 0)), layout="constrained")
-    axes = figure.subplots(rows, columns, sharey=True, squeeze=False).ravel().tolist()
+    axes = figure.subplots(rows, columns, sharey=not chart.linear, squeeze=False).ravel().tolist()
     slot_inches = (width - 0.5) / columns / slots
-    log, (bottom, top) = _scale(chart)
+    scales = {is_linear: _scale(chart, is_linear) for is_linear in (False, True)}
     for ax, (title, panel) in zip(axes, chart.panels.items(), strict=False):
+        log, (bottom, top) = scales[title in chart.linear]
         _draw_panel(ax, chart, panel, bottom, slot_inches)
         ax.set_title(title)
-    for ax in axes[: len(chart.panels)]:
         ax.set_yscale("log" if log else "linear")
         ax.set_ylim(bottom, top)
         if log:
@@ -156,9 +170,10 @@ def draw_bars(chart: BarChart) -> Figure:
     return figure
 
 
-def _scale(chart: BarChart) -> tuple[bool, tuple[float, float]]:
-    """Whether the axis is logarithmic, and its limits."""
-    bars = [b for panel in chart.panels.values() for group in panel.values() for b in group.values()]
+def _scale(chart: BarChart, is_linear: bool) -> tuple[bool, tuple[float, float]]:
+    """Whether the axis of the linear panels, or of the others, is logarithmic, and its limits."""
+    panels = [panel for title, panel in chart.panels.items() if (title in chart.linear) == is_linear]
+    bars = [b for panel in panels for group in panel.values() for b in group.values()]
     largest = [max(b.largest, chart.floor) for b in bars if b.largest is not None]
     least = [max(b.least, chart.floor) for b in bars if b.least is not None]
     positive = [value for value in least + largest if value > 0]
@@ -169,7 +184,7 @@ def _scale(chart: BarChart) -> tuple[bool, tuple[float, float]]:
         return True, (0.1 * chart.floor, 1e3 * chart.floor)  # all below what is shown as a number
     low, high = min(positive), max(positive)
     high = max(high, chart.reference or 0.0)
-    if high / low < _LOG_FROM:
+    if is_linear or high / low < _LOG_FROM:
         return False, (0.0, high * 1.08)
     bottom = 10.0 ** (math.floor(math.log10(low) - 0.15))
     return True, (bottom, high * (high / bottom) ** 0.06)
@@ -281,5 +296,5 @@ def _add_legend(figure: Figure, chart: BarChart, columns: int) -> None:
         cross = Line2D([], [], linestyle="", marker="x", markersize=3.2, color=INK, label="not measured")
         handles.append(cross)
     if chart.stated:
-        handles.append(Line2D([], [], color=INK, linewidth=1.4, label="as stated"))
+        handles.append(Line2D([], [], color=INK, linewidth=1.4, label="stated"))
     figure.legend(handles=handles, loc="outside upper center", ncols=min(columns, len(handles)))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
@@ -42,7 +43,8 @@ def verdicts_table(judged: Sequence[Judged]) -> Table:
         kind="claims",
         name="claims",
         title="Claims and verdicts",
-        caption="Held or not where every measurement says so; what it depends on where they differ.",
+        caption="A claim is held where each of its clauses is, not held where one is not; a clause depends "
+        "where ways to measure it disagree.",
         headings=(
             Heading("", "number"),
             Heading("claim", "claim", numeric=False),
@@ -60,9 +62,10 @@ def measurements_table(judged: Sequence[Judged]) -> Table:
         kind="measurements",
         name="claims-measured",
         title="What was measured for each claim",
-        caption="Means with 95 % bootstrap intervals over pairs and seeds. Held: the whole interval is as "
-        "expected; not held: none of it; else it depends.",
+        caption="Means with 95 % bootstrap intervals over pairs, and over the seeds of each. Held: the whole "
+        "interval is as expected; not held: none of it; else it depends.",
         headings=(
+            Heading("clause", "clause", numeric=False),
             Heading("measured", "measured", numeric=False),
             Heading("mean", "mean"),
             Heading("from", "low", meaning="Lower end of the 95 % interval."),
@@ -82,6 +85,7 @@ def _measured_row(test: Measured) -> tuple[Entry, ...]:
     failed = f", {counted(test.failed, 'cell')} failed" if test.failed else ""
     pairs = f"{test.pairs_held} of {test.pairs}{failed}"
     return (
+        words(test.clause),
         words(test.label),
         *_numbers(test.mean, test.low, test.high),
         words(test.expected),
@@ -92,7 +96,7 @@ def _measured_row(test: Measured) -> tuple[Entry, ...]:
 
 def _numbers(*values: float) -> list[Entry]:
     """Three numbers of one kind: whole ones, as counts of pairs are, stay so."""
-    shown_as = Column("", "", is_count=all(value.is_integer() for value in values))
+    shown_as = Column("", "", is_count=all(math.isnan(value) or value.is_integer() for value in values))
     return [number(value, shown_as) for value in values]
 
 

@@ -299,7 +299,7 @@ PROTOCOLS = {
 """The ways to compare L, and what each is called above a panel."""
 
 ROW_ERRORS = {
-    "row_error_features_mean_px": "of SIFT matches, as the paper measures it",
+    "row_error_features_mean_px": "of SIFT matches",
     "row_error_mean_px": "of true correspondences",
 }
 """The ways to measure row error that stand side by side."""

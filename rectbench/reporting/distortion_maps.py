@@ -73,7 +73,14 @@ def draw_distortion_maps(sources: Sources, results: Sequence[Result], methods: S
     bar.set_label("distortion L")
     bar.outline.set_linewidth(0.4)
     if any((m.values > top).any() for m in shown):
-        bar_ax.text(0.5, 1.07, f"> {decade(top)}", transform=bar_ax.transAxes, ha="center", size=6.5)
+        bar_ax.annotate(
+            f"> {decade(top)}",
+            (0, 1.05),
+            xycoords="axes fraction",
+            xytext=(0, 4),
+            textcoords="offset points",
+            size=6.5,
+        )
     if any(np.isnan(m.values[m.lens]).any() for m in shown):
         patch = Patch(facecolor=LOST, label="not mapped")
         figure.legend(handles=[patch], loc="lower right", borderaxespad=0, fontsize=6)

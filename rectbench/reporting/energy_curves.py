@@ -22,7 +22,7 @@ from rectbench.metrics.energy import (
 from rectbench.reporting.numbers import three_digits
 from rectbench.reporting.run_folder import Result
 from rectbench.reporting.sources import Sources, attempted
-from rectbench.reporting.style import INK, PAGE_INCHES, plain_log_ticks
+from rectbench.reporting.style import INK, PAGE_INCHES
 from rectbench.warps import Rectification
 
 if TYPE_CHECKING:
@@ -47,6 +47,8 @@ _LINES = {
 }
 _LEVELS = 14
 _UNFEASIBLE = "#c4c4c4"
+_TOP_RISES = 3.0
+"""Height of the curves' panel, in rises of the median curve: steeper ones leave it, and the bowl shows."""
 
 
 @dataclass(frozen=True)
@@ -106,7 +108,8 @@ def _draw_slice(ax: Axes, over: EnergySlice) -> None:
     shades = PowerNorm(0.5, low, low + 2 * (high - low))  # the darker half would drown the labels
     ax.contourf(steps, steps, energy, levels, cmap="Blues", norm=shades, extend="max")
     lines = ax.contour(steps, steps, energy, levels[1::3], colors=INK, linewidths=0.4)
-    ax.clabel(lines, fmt=lambda value: three_digits(value), fontsize=5, inline_spacing=2)
+    outer = levels[4::3]  # the innermost is too small for a label beside the cross
+    ax.clabel(lines, outer, fmt=lambda value: three_digits(value), fontsize=5, inline_spacing=2)
     _hatch_unconvex(ax, over)
     ax.plot(0, 0, "+", color=INK, markersize=5, markeredgewidth=1)
     ax.set_xlabel(f"change of {_NAMES[over.first]} [%]")
@@ -125,19 +128,28 @@ def _hatch_unconvex(ax: Axes, over: EnergySlice) -> None:
 
 
 def _draw_curves(ax: Axes, curves: Sequence[EnergyCurve]) -> None:
+    """L above its minimum on a linear axis, the names above the panel."""
     ax.set_box_aspect(1)
     for curve in curves:
         colour, line = _LINES[curve.name]
         energy = np.where(curve.feasible, curve.energy, np.nan)
         label = _NAMES[curve.name]
         ax.plot(100 * curve.steps, energy, color=colour, linestyle=line, linewidth=1.1, label=label)
-    values = [value for curve in curves for value in curve.energy[curve.feasible]]
-    if max(values) > 10 * min(values):
-        ax.set_yscale("log")
-        plain_log_ticks(ax.yaxis)
+    highest = [float(curve.energy[curve.feasible].max()) for curve in curves]
+    low = min(float(curve.energy[curve.feasible].min()) for curve in curves)
+    height = min(max(highest) - low, _TOP_RISES * (float(np.median(highest)) - low))
+    if height > 0:
+        ax.set_ylim(low - 0.04 * height, low + height)
     ax.set_xlabel("change [%]")
     ax.set_ylabel("L")
     ax.grid(axis="y")
-    ax.legend(loc="upper center", ncols=2, fontsize=5.5, handlelength=1.8, columnspacing=0.8)
-    low, high = ax.get_ylim()
-    ax.set_ylim(low, high * 4 if ax.get_yscale() == "log" else low + 1.35 * (high - low))
+    by_number = sorted(ax.lines, key=lambda line: str(line.get_label())[:2])  # columns c₁, c₂, c₃
+    ax.legend(
+        handles=by_number,
+        loc="lower center",
+        bbox_to_anchor=(0.45, 1.0),
+        ncols=3,
+        fontsize=5.5,
+        handlelength=1.8,
+        columnspacing=0.8,
+    )

@@ -25,6 +25,10 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
+_BOUNDED = ("distortion_rescaled", "distortion_stretched")
+"""Never far above 1, as every image may be shrunk: a logarithmic axis would hide a third more or less."""
+
+
 def planned_figures(run: Run, sources: Sources) -> list[Plan]:
     """The figures of each part of the run that it asks for and has data for."""
     return [plan for part in run.parts for plan in _part_plans(part, run, sources)]
@@ -75,8 +79,10 @@ def _pair_bar_plans(run: Run) -> Iterator[Plan]:
             yield _bars(run, chart, name, f"Row error, {pose} pose", caption)
     pose = run.geometric_pose
     if any(key in run.metrics for key in PROTOCOLS):
-        chart = pair_chart(run, "distortion L", PROTOCOLS, pose)
+        chart = pair_chart(run, "distortion L", PROTOCOLS, pose, bounded=_BOUNDED)
         caption = "The paper's distortion L on each pair, under each protocol."
+        if chart.linear:
+            caption += " Rescaled and stretched have a linear axis from 0."
         yield _bars(run, chart, named(run, "distortion"), "Distortion by protocol", caption)
     if "log_distortion" in run.metrics:
         chart = pair_chart(run, "log distortion", {"log_distortion": ""}, pose)
@@ -120,7 +126,7 @@ def _timing_plans(run: Run) -> Iterator[Plan]:
         stated["total"] = sum(stated.values())
     chart = stage_chart(run, STAGES, stated)
     caption = "Seconds of each stage, tables being part of the warp" + (
-        "; the lines are the paper's." if stated else "."
+        "; the lines are stated, not measured here." if stated else "."
     )
     yield replace(_bars(run, chart, named(run, "timing"), "Time", caption), kind="timing")
 
@@ -176,7 +182,8 @@ PICTURES = (
         "rectified",
         "Rectified pairs",
         "Scan lines run through true correspondences (rings): on a rectified pair both rings lie on the "
-        "line, and both boxes between the dashed ones.",
+        "line, and both boxes between the dashed ones. Each pair is fitted to its panel: sizes do not "
+        "compare from one method to the next.",
         lambda sources, results, run: draw_rectified(sources, results, run.methods),
         dpi=PIXELS_PER_INCH,
     ),
@@ -184,7 +191,8 @@ PICTURES = (
         "maps",
         "distortion-map",
         "Distortion maps",
-        "Native L of every pixel of both source images, one scale for all methods.",
+        "Native L of every pixel of both source images, one scale for all methods. The number is L over "
+        "the 500 pixels that the tables measure it at.",
         lambda sources, results, run: draw_distortion_maps(sources, results, run.methods),
     ),
     Picture(
@@ -192,7 +200,8 @@ PICTURES = (
         "squares",
         "Unit squares",
         "Small squares of the left source image, and what each method makes of them where they land on its "
-        "output; the colour is the change of area S.",
+        "output; the colour is the change of area S. Each output is fitted to its panel: compare sizes by "
+        "colour, not by eye.",
         lambda sources, results, run: draw_squares(sources, results, run.methods),
         shown_as="svg",
     ),
@@ -201,8 +210,8 @@ PICTURES = (
         "energy",
         "Energy about the fit",
         "L over two coefficients with the others held (the left image's Ψᵤ, and Ψᵥ of both), and over each "
-        "alone. A change of 100 % turns the slope at the far end of the range by the mean slope. Hatched: "
-        "not convex; grey: rows or columns would change places.",
+        "alone, where the steepest leave the panel. A change of 100 % turns the slope at the far end of the "
+        "range by the mean slope. Hatched: not convex; grey: rows or columns would change places.",
         lambda sources, results, run: draw_energy(sources, results),
         shown_as="svg",
     ),

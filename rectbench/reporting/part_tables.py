@@ -76,7 +76,7 @@ def rows_table(run: Run) -> Table:
         kind="rows",
         name=named(run, "row-error"),
         title=titled(run, "Row error"),
-        caption="Of SIFT matches, as the paper measures it, and of true correspondences; "
+        caption="Of SIFT matches within 3 px of the pose's epipolar planes, and of true correspondences; "
         f"{run.noisy_poses[0]} pose, averages over seeds.",
     )
 

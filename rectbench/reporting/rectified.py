@@ -165,15 +165,16 @@ def _draw_panel(ax: Axes, panel: Panel) -> None:
 
 
 def _draw_boxes(ax: Axes, centres: tuple[FloatArray, FloatArray], side: float) -> None:
-    """Boxes of one size round both points, and the first one's upper and lower edge carried across."""
+    """Boxes of one size round both points, and the first one's edges carried across, above all lines."""
     from matplotlib.patches import Rectangle
 
     left, right = centres
+    dashes = (0, (3, 2))
     for y in (left[1] - side / 2, left[1] + side / 2):
-        ax.plot([left[0], right[0]], [y, y], color=_BOX_COLOUR, linewidth=0.5, linestyle=(0, (3, 2)))
+        ax.plot([left[0], right[0]], [y, y], color=_BOX_COLOUR, linewidth=0.5, linestyle=dashes, zorder=3)
     for x, y in centres:
         corner = (x - side / 2, y - side / 2)
-        ax.add_patch(Rectangle(corner, side, side, fill=False, color=_BOX_COLOUR, linewidth=1.1))
+        ax.add_patch(Rectangle(corner, side, side, fill=False, color=_BOX_COLOUR, linewidth=1.1, zorder=4))
 
 
 def _inside(point: FloatArray, width: int, height: int, margin: float) -> bool:

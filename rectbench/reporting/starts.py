@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rectbench.reporting.labels import pair_labels
+from rectbench.reporting.numbers import decade
 from rectbench.reporting.run_folder import Result, Run
 from rectbench.reporting.style import COLUMN_INCHES, INK, PAGE_INCHES, looks, plain_log_ticks
 
@@ -85,6 +86,7 @@ def draw_starts(study: tuple[Starts, ...], method: str) -> Figure:
     largest = max((ratio - 1 for starts in study for ratio in starts.ratios), default=1.0)
     ax.set_ylim(_FLOOR, max(1.0, 3 * largest))
     plain_log_ticks(ax.yaxis)
+    ax.yaxis.set_major_formatter(lambda value, _: ("≤ " if value < 2 * _FLOOR else "") + decade(value))
     ax.axhspan(_FLOOR, SAME_MINIMUM, color="#e8f3ec", zorder=0)
     ax.axhline(SAME_MINIMUM, color=INK, linewidth=0.6, linestyle=(0, (4, 2)), zorder=1)
     at_edge = ax.get_yaxis_transform()

@@ -9,7 +9,7 @@ import csv
 import io
 import re
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from rectbench.reporting.columns import Column
@@ -140,7 +140,12 @@ def to_markdown(table: Table) -> str:
 
 
 def to_latex(table: Table) -> str:
-    r"""A `table*` for `\usepackage{booktabs,graphicx}`, shrunk to the text's width where it is wider."""
+    r"""A `table*` for `\usepackage{booktabs,graphicx}`, shrunk to the text's width where it is wider.
+
+    One of more rows than a page holds is a `longtable`, for a document of one column.
+    """
+    if len(table.rows) > _PAGE_ROWS:
+        return _long_latex(table)
     alignment = "".join(map(_latex_alignment, table.headings))
     lines = [
         "% needs \\usepackage{booktabs,graphicx}",
@@ -151,19 +156,66 @@ def to_latex(table: Table) -> str:
         "\\resizebox{\\ifdim\\width>\\textwidth\\textwidth\\else\\width\\fi}{!}{%",
         f"\\begin{{tabular}}{{{alignment}}}",
         "\\toprule",
-        _latex_row([_latex_heading(heading) for heading in table.headings]),
+        _latex_head(table),
+        *_latex_sections(table),
+        "\\bottomrule",
+        "\\end{tabular}}",
+        *_latex_notes(table),
+        "\\end{table*}",
     ]
+    return "\n".join([*lines, ""])
+
+
+def _long_latex(table: Table) -> str:
+    """A small table that runs over pages, the heading on each; columns of many words wrap."""
+    columns = zip(*table.rows, strict=True)
+    wide = [max(len(entry.text) for entry in column) > _WIDE_LETTERS for column in columns]
+    paragraph = f"p{{{0.45 / max(1, sum(wide)):.2f}\\textwidth}}"
+    alignment = "".join(
+        paragraph if is_wide else _latex_alignment(heading)
+        for is_wide, heading in zip(wide, table.headings, strict=True)
+    )
+    lines = [
+        "% needs \\usepackage{booktabs,longtable}, and one column",
+        "\\begingroup",
+        "\\footnotesize\\setlength{\\tabcolsep}{3.5pt}\\setlength{\\LTcapwidth}{\\textwidth}",
+        f"\\begin{{longtable}}{{{alignment}}}",
+        f"\\caption{{{escape_latex(f'{table.title}. {table.caption}')}}}",
+        f"\\label{{tab:{table.name}}} \\tabularnewline",
+        "\\toprule",
+        _latex_head(table),
+        "\\endfirsthead",
+        _latex_head(table),
+        "\\midrule",
+        "\\endhead",
+        *_latex_sections(table),
+        "\\bottomrule",
+        "\\end{longtable}",
+        *_latex_notes(table),
+        "\\endgroup",
+    ]
+    return "\n".join([*lines, ""])
+
+
+def _latex_head(table: Table) -> str:
+    return _latex_row([_latex_heading(heading) for heading in table.headings])
+
+
+def _latex_sections(table: Table) -> Iterator[str]:
     for section in table.sections:
-        lines.append("\\midrule")
+        yield "\\midrule"
         if section.title:
             title = f"\\emph{{{escape_latex(section.title)}}}"
-            lines.append(f"\\multicolumn{{{len(table.headings)}}}{{l}}{{{title}}} \\\\")
-        lines += [_latex_row([_latex_entry(entry) for entry in row]) for row in section.rows]
-    lines += ["\\bottomrule", "\\end{tabular}}"]
-    lines += [f"\\par\\smallskip{{\\footnotesize {escape_latex(note)}\\par}}" for note in table.notes]
-    return "\n".join([*lines, "\\end{table*}", ""])
+            yield f"\\multicolumn{{{len(table.headings)}}}{{l}}{{{title}}} \\\\"
+        yield from (_latex_row([_latex_entry(entry) for entry in row]) for row in section.rows)
 
 
+def _latex_notes(table: Table) -> list[str]:
+    return [f"\\par\\smallskip{{\\footnotesize {escape_latex(note)}\\par}}" for note in table.notes]
+
+
+_PAGE_ROWS = 45
+_WIDE_LETTERS = 24
 _HEADING_CHARACTERS = 10
 
 SPELLINGS = {"csv": to_csv, "md": to_markdown, "tex": to_latex}

@@ -94,8 +94,7 @@ def _main_table(run: Run, pose: str) -> Table:
         )
         for i, s in enumerate(summaries)
     )
-    pairs = len({r.pair for r in results})
-    caption = f"Averages over {counted(pairs, 'pair')} ({_grid_text(results)}), ranked by log distortion."
+    caption = f"Averages over {_pairs_text(results)}, ranked by log distortion."
     return Table(
         kind="main",
         part=run.group,
@@ -301,15 +300,17 @@ def _averaged_field(summaries: Sequence[Summary], key: str) -> list[Entry]:
     return with_best(entries, shown_as, eligible)
 
 
-def _grid_text(results: Sequence[Result]) -> str:
-    parts = [
-        counted(len({r.scene for r in results}), "scene"),
-        counted(len({r.rig for r in results}), "rig"),
-    ]
-    for name, values in (("motion", {r.motion for r in results}), ("seed", {r.seed for r in results})):
-        if len(values) > 1:
-            parts.append(counted(len(values), name))
-    return ", ".join(parts)
+def _pairs_text(results: Sequence[Result]) -> str:
+    """How many pairs of which grid, times the seeds where each pair has them all."""
+    pairs, places, seeds = (len({getattr(r, of) for r in results}) for of in ("pair", "place", "seed"))
+    if seeds > 1 and pairs == places * seeds:
+        return f"{counted(places, 'pair')} × {seeds} seeds ({_grid_text(results, ('motion',))})"
+    return f"{counted(pairs, 'pair')} ({_grid_text(results, ('motion', 'seed'))})"
+
+
+def _grid_text(results: Sequence[Result], beside: Sequence[str]) -> str:
+    counts = {name: len({getattr(r, name) for r in results}) for name in ("scene", "rig", *beside)}
+    return ", ".join(counted(n, name) for name, n in counts.items() if n > 1 or name not in beside)
 
 
 def counted(n: int, noun: str) -> str:

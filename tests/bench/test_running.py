@@ -232,7 +232,7 @@ def test_a_run_cut_off_in_the_middle_loses_nothing_and_leaves_no_process(
     _until(lambda: pid.exists() and pid.read_text())
     worker = int(pid.read_text())
     process.send_signal(stop)
-    _, errors = process.communicate(timeout=30)
+    _, errors = process.communicate(timeout=90)
     assert process.returncode != 0
     _until(lambda: _gone(worker), 15)
     assert not (tmp_path / "run").exists()

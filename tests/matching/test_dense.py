@@ -152,6 +152,8 @@ def test_an_unknown_matcher_is_told_with_the_nearest_names() -> None:
     rect, black = rb.rectify(RIGS["left camera first"]), np.zeros((160, 240, 3), np.uint8)
     with pytest.raises(rb.UnknownName, match=r"unknown matcher 'sgmb'; did you mean .*sgbm"):
         dense_disparity(rect, black, black, matcher="sgmb")
+    with pytest.raises(rb.UnknownName, match="unknown matcher"):
+        dense_disparity(rect, black, black, matcher=["sgbm"])  # type: ignore[arg-type]
 
 
 def test_images_of_another_size_are_refused() -> None:

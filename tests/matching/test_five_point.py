@@ -75,3 +75,10 @@ def test_a_sample_of_one_ray_gives_nothing_that_is_not_finite() -> None:
     ray = np.tile([0.0, 0.0, 1.0], (1, 5, 1))
     found, _ = essential_matrices(ray, ray)
     assert np.isfinite(found).all()
+
+
+def test_samples_of_one_left_ray_give_nothing_that_is_not_finite() -> None:
+    rng = np.random.default_rng(0)
+    left = np.broadcast_to(unit(rng.normal(size=(SAMPLES, 1, 3))), (SAMPLES, 5, 3))
+    found, _ = essential_matrices(left, unit(rng.normal(size=(SAMPLES, 5, 3))))
+    assert np.isfinite(found).all()

@@ -12,6 +12,7 @@ import pytest
 
 import rectbench as rb
 from rectbench import cli
+from rectbench.matching.evidence import refuse_same_place
 from tests.matching.box_room import pair_of, photograph
 from tests.rigs_for_tests import rig
 
@@ -83,7 +84,35 @@ def test_identical_images_are_refused(pair: Pair) -> None:
 
 def test_a_second_photograph_from_the_same_place_is_refused(pair: Pair) -> None:
     again = photograph(RIG.left, np.eye(3), np.zeros(3), noise=3.0)
-    refused((pair[0], again), "a turn alone")
+    refused((pair[0], again), "from the same place")
+
+
+@pytest.mark.parametrize("change", ["compressed", "brighter", "noisy"])
+def test_one_photograph_stored_twice_is_refused_though_the_lenses_differ(pair: Pair, change: str) -> None:
+    other = rb.Camera(RIG.left.model, RIG.left.size, {**RIG.left.params, "fx": 1.02 * RIG.left.params["fx"]})
+    again = {
+        "compressed": lambda: cv2.imdecode(cv2.imencode(".jpg", pair[0], [1, 90])[1], cv2.IMREAD_UNCHANGED),
+        "brighter": lambda: cv2.add(pair[0], 1),
+        "noisy": lambda: cv2.add(
+            pair[0], np.random.default_rng(0).normal(0, 2, pair[0].shape), dtype=cv2.CV_8U
+        ),
+    }[change]()
+    with pytest.raises(rb.PoseNotFound, match="from the same place"):
+        rb.estimate_pose((pair[0], again), dataclasses.replace(RIG, right=other))
+
+
+@pytest.mark.parametrize("flow", ["none", "even", "outwards"])
+def test_matches_that_hardly_move_are_of_one_place_only_without_order(flow: str) -> None:
+    rng = np.random.default_rng(0)
+    left = rng.uniform(0, 500, (400, 2))
+    even = np.c_[rng.uniform(0, 0.8, 400), np.zeros(400)]
+    moved = {"none": 0 * left, "even": even, "outwards": (left - 250) / 500}[flow]
+    matches = rb.Matches(left, left + moved + rng.normal(0, 0.1, left.shape))
+    if flow == "none":
+        with pytest.raises(rb.PoseNotFound, match="from the same place"):
+            refuse_same_place(matches, 1.0)
+    else:
+        refuse_same_place(matches, 1.0)
 
 
 def test_a_camera_that_only_turned_is_refused(pair: Pair) -> None:
@@ -113,6 +142,8 @@ def test_images_of_another_size_are_refused_by_their_sizes(pair: Pair) -> None:
     ("options", "reason"),
     [
         ({"detector": "surfer"}, "surf"),
+        ({"detector": None}, "unknown detector 'None'"),
+        ({"detector": ["sift"]}, "unknown detector"),
         ({"ratio": 0}, "ratio"),
         ({"seed": -1}, "seed"),
         ({"farthest": "far"}, "farthest"),

@@ -169,6 +169,36 @@ def test_a_few_near_points_among_far_ones_tell_the_pose() -> None:
     assert found.difference_deg(WIDE)[1] < 3
 
 
+@pytest.mark.parametrize("seed", range(10))
+def test_a_plane_tells_the_pose_of_the_two_that_lies_ahead(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    x, y = rng.uniform(-1.5, 1.5, (2, 400))
+    points = np.stack([x, y, 1 + 0.3 * x + 0.2 * y], axis=1)
+    exact = np.stack([WIDE.left.project(points)[0], WIDE.right.project(WIDE.right_from_left(points))[0]])
+    found = estimated(WIDE, rb.Matches(*(exact + rng.normal(0, 0.3, exact.shape))), seed)
+    assert found.difference_deg(WIDE)[0] < 0.1
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_wrong_matches_may_come_first(seed: int) -> None:
+    left, right = noisy_matches(WIDE, outliers=0.3, seed=seed)
+    assert estimated(WIDE, rb.Matches(left[::-1], right[::-1])).difference_deg(WIDE)[0] < 0.2
+
+
+@pytest.mark.parametrize("stuck", ["left", "right", "both"])
+def test_matches_of_a_single_pixel_are_refused(stuck: str) -> None:
+    anywhere, one = np.random.default_rng(0).uniform(0, 500, (50, 2)), np.full((50, 2), 250.0)
+    pixels = (anywhere if stuck == "right" else one), (anywhere if stuck == "left" else one)
+    with pytest.raises(rb.PoseNotFound, match="no pose stands out"):
+        estimated(WIDE, rb.Matches(*pixels))
+
+
+def test_matches_of_unequal_lengths_are_told() -> None:
+    left, right = noisy_matches(WIDE)
+    with pytest.raises(rb.InvalidInput, match=r"\(100, 2\) and \(99, 2\)"):
+        estimated(WIDE, rb.Matches(left[:100], right[:99]))
+
+
 def test_matches_that_no_lens_sees_are_not_counted() -> None:
     outside = np.full((20, 2), -4000.0)
     with pytest.raises(rb.PoseNotFound, match="of 20"):

@@ -40,6 +40,7 @@ CLAIM = {
             "metric": "distortion_native",
             "method": OURS,
             "measure": "wins",
+            "rivals": ["abraham"],
             "above": 2,
         }
     ],

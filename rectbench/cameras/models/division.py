@@ -11,6 +11,8 @@ from rectbench.cameras.lens import FOCAL_PARAMETERS, RadialLens, register
 
 LAST_SLOPE = 1e-4
 """Slope of θ over r, to that on the axis, at which a lens with k > 0 ends, 1e-8 rad before the fold."""
+FARTHEST = 1e6
+"""Focal lengths from the axis at which a lens with a k of next to nothing ends, 1e-6 rad before 90°."""
 LEAST_NEGATIVE = -1e-6
 """Nearer to 0 than this the image behind the lens lies over 1000 focal lengths away."""
 
@@ -31,7 +33,7 @@ class Division(RadialLens):
             return {"max_theta": math.pi, "max_radius": math.inf}
         if p.k <= 0:
             return {"max_theta": 0.5 * math.pi - 1e-9, "max_radius": math.inf}
-        radius = math.sqrt((1.0 - LAST_SLOPE) / p.k)
+        radius = min(math.sqrt((1.0 - LAST_SLOPE) / p.k), FARTHEST)
         return {"max_theta": float(self.angle(p, radius, NUMPY)), "max_radius": radius}
 
     def radius(self, c: Any, theta: Any, xp: Any) -> Any:
