@@ -228,11 +228,18 @@ def test_a_run_cut_off_in_the_middle_loses_nothing_and_leaves_no_process(
         f"import rectbench as rb\nfrom rectbench.bench.running import run\n"
         f"run(rb.Report(**{fields!r}), {str(tmp_path / 'run')!r}, jobs=1)\n"
     )
-    process = subprocess.Popen([sys.executable, script], env=os.environ, stderr=subprocess.PIPE, text=True)
+    process = subprocess.Popen(
+        [sys.executable, script],
+        env=os.environ,
+        stderr=subprocess.PIPE,
+        text=True,
+        # A shell's background job ignores Ctrl-C, and would hand that on.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+    )
     _until(lambda: pid.exists() and pid.read_text())
     worker = int(pid.read_text())
     process.send_signal(stop)
-    _, errors = process.communicate(timeout=90)
+    _, errors = process.communicate(timeout=30)
     assert process.returncode != 0
     _until(lambda: _gone(worker), 15)
     assert not (tmp_path / "run").exists()
