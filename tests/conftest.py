@@ -1,6 +1,31 @@
-"""Property tests draw the same examples in every run, whatever the machine's speed."""
+"""Property tests draw the same examples in every run; and a shell, for tests of the command line."""
 
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+
+import pytest
 from hypothesis import settings
+
+from rectbench import cli
 
 settings.register_profile("rectbench", derandomize=True, deadline=None)
 settings.load_profile("rectbench")
+
+Shell = Callable[..., tuple[int, str, str]]
+
+
+@pytest.fixture
+def shell(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Shell:
+    """Runs `rectbench` with these words; gives exit code, stdout and stderr."""
+
+    def call(*words: object) -> tuple[int, str, str]:
+        monkeypatch.setattr(sys, "argv", ["rectbench", *map(str, words)])
+        with pytest.raises(SystemExit) as ended:
+            cli.main()
+        captured = capsys.readouterr()
+        assert isinstance(ended.value.code, int)
+        return ended.value.code, captured.out, captured.err
+
+    return call

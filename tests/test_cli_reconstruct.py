@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import inspect
-import sys
-from collections.abc import Callable
 from pathlib import Path
 
 import cv2
@@ -14,28 +12,17 @@ import trimesh
 
 import rectbench as rb
 from rectbench import cli
+from tests.conftest import Shell
 from tests.matching.sphere_room import CENTRE_BASELINES, RADIUS_BASELINES, sphere_pair
 from tests.rigs_for_tests import rig
 
-Shell = Callable[..., tuple[int, str, str]]
 FILES = {"cloud.ply", "depth.npz", "depth_mm.png", "left.png", "picture.png"}
 ROOM = rig("kannala-brandt", size=(200, 140))
 
 
-@pytest.fixture
-def shell(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> Shell:
-    """Runs `rectbench` with these words; gives exit code, stdout and stderr."""
+@pytest.fixture(autouse=True)
+def in_a_folder_of_its_own(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.chdir(tmp_path)
-
-    def call(*words: object) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["rectbench", *map(str, words)])
-        with pytest.raises(SystemExit) as ended:
-            cli.main()
-        captured = capsys.readouterr()
-        assert isinstance(ended.value.code, int)
-        return ended.value.code, captured.out, captured.err
-
-    return call
 
 
 @pytest.fixture

@@ -103,8 +103,7 @@ def run_cell(task: CellTask, store_root: Path) -> Outcome:
 def keep(task: CellTask, outcome: Outcome, store: Store) -> None:
     """Store how a cell ended, if it would end so again."""
     if outcome.status in LASTING:
-        text = json.dumps(asdict(outcome))
-        store.write(CELLS, cell_inputs(task), lambda folder: _write(folder / ROW, text))
+        store.write_text(CELLS, cell_inputs(task), ROW, json.dumps(asdict(outcome)))
 
 
 def run_pair(pair: PairTask, store_root: Path) -> Outcome:
@@ -241,7 +240,3 @@ def timed(call: Callable[[], Result]) -> tuple[Result, float]:
         if seconds[0] > SLOW_CALL_S:
             return result, seconds[0]
     return result, min(seconds[1:])
-
-
-def _write(path: Path, text: str) -> None:
-    path.write_text(text, encoding="utf-8")

@@ -45,8 +45,7 @@ def estimated_pose(pair: PairTask, store: Store) -> PoseEstimate:
             try:
                 estimate = estimate_from_images(pair, load_images(pair, store))
             except PoseNotFound as failure:
-                reason = json.dumps({"reason": str(failure)})
-                store.write(POSES, inputs, lambda place: _write(place / REASON, reason))
+                store.write_text(POSES, inputs, REASON, json.dumps({"reason": str(failure)}))
                 raise
             store.write(POSES, inputs, lambda place: _save(estimate, place / NUMBERS))
             return estimate
@@ -102,7 +101,3 @@ def _load(path: Path) -> PoseEstimate:
             motion="forward" if stored["motion"] == "forward" else "sideways",
             seconds=json.loads(str(stored["seconds"])),
         )
-
-
-def _write(path: Path, text: str) -> None:
-    path.write_text(text, encoding="utf-8")

@@ -6,14 +6,13 @@ import traceback
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Literal, get_args
+from typing import Literal
 
 import cv2
 
 from rectbench.errors import InvalidInput, InvalidResult, Unavailable, Unsupported
 
 Status = Literal["ok", "unsupported", "unavailable", "invalid", "error", "crash", "timeout", "oom"]
-STATUSES: tuple[Status, ...] = get_args(Status)
 
 LASTING: frozenset[Status] = frozenset({"ok", "unsupported", "invalid"})
 """What the same inputs give again. The others may be the machine's doing, and are tried anew."""

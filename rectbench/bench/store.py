@@ -108,6 +108,14 @@ class Store:
             raise self._unwritable(error) from error
         return place
 
+    def write_text(self, kind: str, inputs: Inputs, name: str, text: str) -> Path:
+        """Store the object that is one text file of this name."""
+
+        def fill(folder: Path) -> None:
+            (folder / name).write_text(text, encoding="utf-8")
+
+        return self.write(kind, inputs, fill)
+
     def drop(self, place: Path) -> None:
         """Remove an object; moved aside first, so that no reader meets half of it."""
         doomed = place.with_name(f".unfinished-{place.name[:12]}-{os.getpid()}-{time.monotonic_ns()}")
