@@ -11,7 +11,7 @@ import pytest
 import trimesh
 
 import rectbench as rb
-from rectbench import cli
+from rectbench.cli import photographs
 from tests.conftest import Shell
 from tests.matching.sphere_room import CENTRE_BASELINES, RADIUS_BASELINES, sphere_pair
 from tests.rigs_for_tests import rig
@@ -106,7 +106,7 @@ def test_a_pair_that_shares_nothing_is_one_line(shell: Shell, tmp_path: Path) ->
 
 
 def test_the_defaults_are_those_of_python() -> None:
-    ours, theirs = (inspect.signature(call).parameters for call in (cli.reconstruct, rb.reconstruct))
+    ours, theirs = (inspect.signature(call).parameters for call in (photographs.reconstruct, rb.reconstruct))
     for name in ("matcher", "nearest_baselines", "pixels"):
         assert ours[name].default == theirs[name].default
 

@@ -1,0 +1,53 @@
+"""The command line. Every verb is a few lines over the Python call of the same name.
+
+Modules are imported by the verb that needs them, so that `rectbench --help` is there at once.
+Exit codes: 0 good, 1 a regression or a failed check, 2 wrong usage or a broken environment,
+3 incomplete or nothing measured.
+"""
+
+from __future__ import annotations
+
+import logging
+import sys
+
+from rectbench.cli import machine, names, photographs, rendering, running
+from rectbench.cli.app import WRONG_USAGE, app
+from rectbench.errors import RectbenchError
+
+for verb in (
+    names.list_,
+    running.run,
+    running.report,
+    running.gate,
+    running.compare,
+    rendering.render,
+    photographs.rectify,
+    photographs.pose,
+    photographs.reconstruct,
+    machine.check,
+    machine.doctor,
+    machine.gc,
+):
+    app.command(verb.__name__.strip("_"))(verb)
+
+
+def main() -> None:
+    """Run the command line; a known error is one line on stderr."""
+    logging.basicConfig(format="rectbench: %(message)s", level=logging.WARNING)
+    try:
+        status = app(standalone_mode=False)
+    except (RectbenchError, OSError) as error:
+        status = _complain(error)
+    except Exception as error:
+        # Typer ships its own copy of Click or uses the installed one: usage errors are known by shape.
+        message = getattr(error, "format_message", None)
+        if message is None:
+            raise
+        status = _complain(message())
+    sys.exit(status if isinstance(status, int) else 0)
+
+
+def _complain(error: object) -> int:
+    if str(error):  # without a verb there is only the help, printed already
+        print(f"rectbench: {' '.join(str(error).split())}", file=sys.stderr)
+    return WRONG_USAGE

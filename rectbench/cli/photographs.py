@@ -1,0 +1,134 @@
+"""The verbs for images and calibrations of one's own."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from rectbench.cli.app import (
+    LeftImage,
+    MaxAngle,
+    Method,
+    MethodOptions,
+    MethodSeed,
+    RigFiles,
+    RightImage,
+    Unit,
+)
+
+if TYPE_CHECKING:
+    from rectbench.rendering.images import StereoPair
+    from rectbench.warps import Rectification
+
+
+def rectify(
+    left: LeftImage,
+    right: RightImage,
+    rig: RigFiles,
+    out: Annotated[Path, typer.Option("--out", "-o", help="Folder for what is made.")] = Path("rectified"),
+    method: Method = "local-homography",
+    option: MethodOptions = None,
+    seed: MethodSeed = 0,
+    max_angle_deg: MaxAngle = None,
+    unit: Unit = None,
+) -> None:
+    """Rectify an image pair: rectified images, masks, lookup tables and a preview with scan lines."""
+    from rectbench.bench.rectified_files import write_rectified
+
+    pair, rectification = _rectified(left, right, rig, method, option, seed, max_angle_deg, unit)
+    for file in write_rectified(rectification, pair, out):
+        print(file)
+
+
+def pose(
+    left: LeftImage,
+    right: RightImage,
+    rig: RigFiles,
+    out: Annotated[
+        Path | None, typer.Option("--out", "-o", metavar="FILE", help="Write the rig in this pose as YAML.")
+    ] = None,
+    detector: Annotated[str, typer.Option(help="Of features: sift, akaze, orb or surf.")] = "sift",
+    seed: Annotated[int, typer.Option(help="Of the random samples.")] = 0,
+    max_angle_deg: MaxAngle = None,
+    unit: Unit = None,
+) -> None:
+    """Estimate from an image pair how the right camera stands to the left one.
+
+    The calibration gives the two lenses and the length of the baseline; its own pose is compared with
+    the estimate.
+    """
+    from rectbench import api, terminal
+    from rectbench.matching.images import read_images
+    from rectbench.rigs import load_rig
+
+    images = read_images(left, right)
+    calibrated = load_rig(rig[0] if len(rig) == 1 else rig, size=images.left.shape[1::-1], unit=unit)
+    if max_angle_deg is not None:
+        calibrated = calibrated.within(max_angle_deg)
+    estimate = api.estimate_pose(images, calibrated, detector=detector, seed=seed)
+    terminal.show_pose(estimate, calibrated)
+    if out is not None:
+        estimate.rig(calibrated).save(out)
+        print(out)
+
+
+def reconstruct(
+    left: LeftImage,
+    right: RightImage,
+    rig: RigFiles,
+    out: Annotated[Path, typer.Option("--out", "-o", help="Folder for what is made.")] = Path(
+        "reconstructed"
+    ),
+    method: Method = "local-homography",
+    option: MethodOptions = None,
+    seed: MethodSeed = 0,
+    max_angle_deg: MaxAngle = None,
+    unit: Unit = None,
+    matcher: Annotated[
+        str, typer.Option(help="The dense matcher: sgbm, sgbm-5way, sgbm-8way or bm.")
+    ] = "sgbm",
+    nearest_baselines: Annotated[
+        float, typer.Option(help="Nothing nearer is sought, in multiples of the baseline.")
+    ] = 4.0,
+    pixels: Annotated[
+        float, typer.Option(help="A rectified image of more pixels is made smaller first.")
+    ] = 1e6,
+) -> None:
+    """Reconstruct an image pair in 3-D: a coloured point cloud, depth, disparity and a picture."""
+    from rectbench.matching import reconstruct
+    from rectbench.matching.matchers import matcher_named
+    from rectbench.reporting.reconstructed import write_reconstruction
+
+    matcher_named(matcher)  # a wrong name is told before the work begins
+    pair, rectification = _rectified(left, right, rig, method, option, seed, max_angle_deg, unit)
+    found = reconstruct(
+        rectification, pair.left, pair.right, matcher, pixels=pixels, nearest_baselines=nearest_baselines
+    )
+    for file in write_reconstruction(found, out):
+        print(file)
+
+
+def _rectified(
+    left: Path,
+    right: Path,
+    rig: list[str],
+    method: str,
+    option: list[str] | None,
+    seed: int,
+    max_angle_deg: float | None,
+    unit: str | None,
+) -> tuple[StereoPair, Rectification]:
+    """The images of two files, and the rectification of their rig."""
+    from rectbench import api
+    from rectbench.bench.configuring import read_options
+    from rectbench.rendering.images import StereoPair
+    from rectbench.rigs import load_rig
+
+    pair = StereoPair.read(left, right)
+    calibrated = load_rig(rig[0] if len(rig) == 1 else rig, size=pair.left.shape[1::-1], unit=unit)
+    if max_angle_deg is not None:
+        calibrated = calibrated.within(max_angle_deg)
+    options = read_options([f"method.{text}" for text in option or []]).get("method", {})
+    return pair, api.rectify(calibrated, method, images=pair, seed=seed, **options)
