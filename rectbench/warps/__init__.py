@@ -3,16 +3,17 @@
 from rectbench.warps.extent import ViewAngles, centre_rays, perspective_size, view_angles
 from rectbench.warps.frame import centre_resolution_px, rectifying_rotations, refuse_epipole_in_view
 from rectbench.warps.pinhole_view import HomographyRectifier, PinholeView
+from rectbench.warps.profiles import Cubic, Profile, Radial
 from rectbench.warps.rectification import Rectification
 from rectbench.warps.rectifier import Images, Matches, Options, Problem, Rectifier, option, pose_problem
 from rectbench.warps.sampling import evaluation_pixels, outline_pixels
-from rectbench.warps.scaled import Scaled
-from rectbench.warps.targets import Cubic, Epipolar, Perspective, Profile, Radial, Target
+from rectbench.warps.targets import Epipolar, Framed, Perspective, Target
 from rectbench.warps.warp import Warp
 
 __all__ = [
     "Cubic",
     "Epipolar",
+    "Framed",
     "HomographyRectifier",
     "Images",
     "Matches",
@@ -24,7 +25,6 @@ __all__ = [
     "Radial",
     "Rectification",
     "Rectifier",
-    "Scaled",
     "Target",
     "ViewAngles",
     "Warp",

@@ -15,7 +15,6 @@ from rectbench.cameras.projection import as_points
 from rectbench.errors import InvalidInput
 from rectbench.rigs import Rig
 from rectbench.warps.frame import rectifying_rotations, signed_baseline_m
-from rectbench.warps.scaled import Scaled
 from rectbench.warps.tables import FloatMap, lookup_table
 from rectbench.warps.targets import Target
 from rectbench.warps.warp import Warp
@@ -85,7 +84,7 @@ class Rectification:
         return self.left if side == "left" else self.right
 
     def scaled(self, factor: float) -> Rectification:
-        """The same images `factor` times as large (sizes rounded to whole pixels), see `Scaled`."""
+        """The same images `factor` times as large (sizes rounded to whole pixels), see `Framed`."""
         try:
             sides = [max(1, round(pixels * factor)) for pixels in self.size]
         except (TypeError, ValueError, OverflowError):
@@ -93,10 +92,20 @@ class Rectification:
         if not sides or factor <= 0:
             raise InvalidInput(f"a rectification was scaled by {factor!r}; expected a finite number above 0")
         size = sides[0], sides[1]
-        across, down = (new / old for new, old in zip(size, self.size, strict=True))
-        left, right = (
-            replace(warp, target=Scaled(warp.target, across, down)) for warp in (self.left, self.right)
-        )
+        return self.windowed((-0.5, -0.5), self.size, size)
+
+    def windowed(
+        self, corner: tuple[float, float], extent: tuple[float, float], size: tuple[int, int]
+    ) -> Rectification:
+        """A window of the rectified images, at another size.
+
+        `corner` and `extent` are the window's upper left corner and its width and height, in pixels of
+        these images, whose own corner is (-0.5, -0.5); it may reach beyond them. The window's corners
+        become those of images of `size` pixels.
+        """
+        scales = (new / old for new, old in zip(size, extent, strict=True))
+        frame = (*corner, *scales)
+        left, right = (replace(warp, target=warp.target.framed(*frame)) for warp in (self.left, self.right))
         return replace(self, left=left, right=right, size=size)
 
     def maps(self, side: Side) -> tuple[FloatMap, FloatMap]:

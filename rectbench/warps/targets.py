@@ -3,20 +3,16 @@
 from __future__ import annotations
 
 import math
-from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from rectbench.cameras import Projection
 from rectbench.cameras.arrays import Constants, FloatArray, namespaced
-from rectbench.cameras.inversion import invert_monotone
 from rectbench.errors import InvalidInput
-
-ANGLE_SLACK_RAD = 1e-9
-"""Rays this little beyond a profile's range still count as in it (rounding at the image's corner)."""
+from rectbench.warps.profiles import ANGLE_SLACK_RAD, Profile, Radial
 
 
 class Target(Projection):
@@ -28,12 +24,55 @@ class Target(Projection):
         """Values that hang on the column (û) alone and on the row (v̂) alone, for `ray_formula`."""
         return (columns,), (rows,)
 
+    def framed(self, left: float, top: float, across: float, down: float) -> Target:
+        """The image through a window whose corner is (left, top), its pixels scaled; see `Framed`."""
+        return Framed(self, left, top, across, down)
+
     def ray_formula(
         self, c: Any, column: tuple[Any, ...], row: tuple[Any, ...], xp: Any
     ) -> tuple[Any, Any, Any, Any]:
         """The unit ray of a rectified pixel from the values of `axis_tables`, and its validity."""
         (u,), (v,) = column, row
         return self.unproject_formula(c, u, v, xp)
+
+
+@dataclass(frozen=True, eq=False)
+class Framed(Target):
+    """Any target seen through a window of its image, `across` times as wide and `down` times as high.
+
+    (left, top) is the window's corner, in pixels of the target's image, whose own corner is (-0.5, -0.5).
+    """
+
+    target: Target
+    left: float
+    top: float
+    across: float
+    down: float
+
+    @property
+    def constants(self) -> Constants:
+        window = {name: getattr(self, name) for name in ("left", "top", "across", "down")}
+        return {**window, "target": self.target.constants}
+
+    def project_formula(self, c: Any, x: Any, y: Any, z: Any, xp: Any) -> tuple[Any, Any, Any]:
+        u, v, ok = self.target.project_formula(c.target, x, y, z, xp)
+        return (u - c.left) * c.across - 0.5, (v - c.top) * c.down - 0.5, ok
+
+    def unproject_formula(self, c: Any, u: Any, v: Any, xp: Any) -> tuple[Any, Any, Any, Any]:
+        u, v = (u + 0.5) / c.across + c.left, (v + 0.5) / c.down + c.top
+        return self.target.unproject_formula(c.target, u, v, xp)
+
+    def axis_tables(
+        self, columns: FloatArray, rows: FloatArray
+    ) -> tuple[tuple[FloatArray, ...], tuple[FloatArray, ...]]:
+        return self.target.axis_tables(
+            (columns + 0.5) / self.across + self.left, (rows + 0.5) / self.down + self.top
+        )
+
+    def ray_formula(
+        self, c: Any, column: tuple[Any, ...], row: tuple[Any, ...], xp: Any
+    ) -> tuple[Any, Any, Any, Any]:
+        return self.target.ray_formula(c.target, column, row, xp)
 
 
 WORST_CONDITION = 1e13
@@ -67,6 +106,10 @@ class Perspective(Target):
     def constants(self) -> Constants:
         return {"P": _rows(self.matrix), "P_inverse": _rows(np.linalg.inv(self.matrix))}
 
+    def framed(self, left: float, top: float, across: float, down: float) -> Perspective:
+        window = np.array([[across, 0, -left * across - 0.5], [0, down, -top * down - 0.5], [0, 0, 1]])
+        return Perspective(window @ self.matrix)
+
     def project_formula(self, c: Any, x: Any, y: Any, z: Any, xp: Any) -> tuple[Any, Any, Any]:
         (a, b, d), (e, f, g), (h, i, j) = c.P
         w = h * x + i * y + j * z
@@ -79,147 +122,6 @@ class Perspective(Target):
         return x / length, y / length, z / length, length > 0.0
 
 
-class Profile(ABC):
-    """A rising function from an angle to a pixel coordinate, on a stated range of angles."""
-
-    low: float
-    """Least angle, radians."""
-    high: float
-    """Greatest angle, radians."""
-
-    @property
-    @abstractmethod
-    def constants(self) -> Constants:
-        """The numbers in the formulas, `low` and `high` among them."""
-
-    @abstractmethod
-    def value(self, c: Any, angle: Any, xp: Any) -> Any:
-        """Pixel coordinate of the angle (radians)."""
-
-    @abstractmethod
-    def angle(self, c: Any, value: Any, xp: Any) -> Any:
-        """Angle (radians) of the pixel coordinate; anything for one out of range."""
-
-    def __call__(self, angle: ArrayLike) -> FloatArray:
-        """Pixel coordinates of angles in radians, of any shape."""
-        result: FloatArray = np.asarray(
-            self.value(namespaced(self.constants), np.asarray(angle, dtype=float), np)
-        )
-        return result
-
-
-@dataclass(frozen=True)
-class Cubic(Profile):
-    """Ψ(θ) = c0 + c1 θ + c2 θ² + c3 θ³, rising over [low, high] (the paper's rectification model)."""
-
-    c0: float
-    c1: float
-    c2: float
-    c3: float
-    low: float
-    high: float
-
-    def __post_init__(self) -> None:
-        if not self.low < self.high:
-            raise InvalidInput(f"Cubic has the range [{self.low}, {self.high}]; expected low < high")
-        least = least_slope(np.array([self.c1, self.c2, self.c3]), self.low, self.high)
-        if not least > 0:
-            raise InvalidInput(
-                f"Cubic falls within [{self.low:.4f}, {self.high:.4f}] rad (slope {least:.3g})"
-            )
-
-    @property
-    def constants(self) -> Constants:
-        values = {name: getattr(self, name) for name in ("c0", "c1", "c2", "c3", "low", "high")}
-        return {**values, "v_low": float(self._cubic(self.low)), "v_high": float(self._cubic(self.high))}
-
-    def _cubic(self, angle: float) -> float:
-        return self.c0 + angle * (self.c1 + angle * (self.c2 + angle * self.c3))
-
-    def value(self, c: Any, angle: Any, xp: Any) -> Any:
-        return c.c0 + angle * (c.c1 + angle * (c.c2 + angle * c.c3))
-
-    def angle(self, c: Any, value: Any, xp: Any) -> Any:
-        def cubic_and_slope(angle: Any) -> tuple[Any, Any]:
-            slope = c.c1 + angle * (2.0 * c.c2 + 3.0 * c.c3 * angle)
-            return self.value(c, angle, xp), slope
-
-        share = (value - c.v_low) / (c.v_high - c.v_low)
-        low, high = 0.0 * value + c.low, 0.0 * value + c.high
-        start = xp.minimum(xp.maximum(c.low + share * (c.high - c.low), low), high)
-        found = invert_monotone(cubic_and_slope, value, low, high, start, xp)
-        span = 1.0 + ANGLE_SLACK_RAD
-        inside = (share >= 1.0 - span) & (share <= span)
-        return xp.where(inside, found, math.nan)
-
-
-def least_slope(coefficients: FloatArray, low: float, high: float) -> float:
-    """Least of c1 + 2 c2 θ + 3 c3 θ² over [low, high], exactly: at an end or at the vertex."""
-    c1, c2, c3 = coefficients
-    places = [low, high]
-    if abs(c2) < 3 * abs(c3) * max(abs(low), abs(high)):
-        places.append(min(max(-c2 / (3 * c3), low), high))
-    return float(min(c1 + t * (2 * c2 + 3 * c3 * t) for t in places))
-
-
-RADIAL_LIMIT_RAD = {
-    "equidistant": math.pi,
-    "stereographic": math.pi * (1 - 1e-6),
-    "equisolid": math.pi * (1 - 1e-6),
-    "orthographic": math.pi / 2 * (1 - 1e-6),
-    "cylindrical": math.pi / 2 * (1 - 1e-6),
-}
-
-
-@dataclass(frozen=True)
-class Radial(Profile):
-    """centre + focal r(θ) with r one of the classical lens laws (Abraham and Förstner 2005)."""
-
-    law: str
-    focal_px: float
-    centre_px: float
-
-    def __post_init__(self) -> None:
-        if self.law not in RADIAL_LIMIT_RAD:
-            raise InvalidInput(
-                f"unknown lens law '{self.law}'; expected one of {', '.join(RADIAL_LIMIT_RAD)}"
-            )
-        if not 0 < self.focal_px < math.inf:
-            raise InvalidInput(f"Radial has the focal length {self.focal_px} px; expected one above 0")
-
-    @property
-    def low(self) -> float:  # type: ignore[override]
-        return -RADIAL_LIMIT_RAD[self.law]
-
-    @property
-    def high(self) -> float:  # type: ignore[override]
-        return RADIAL_LIMIT_RAD[self.law]
-
-    @property
-    def constants(self) -> Constants:
-        return {"focal": self.focal_px, "centre": self.centre_px, "low": self.low, "high": self.high}
-
-    def value(self, c: Any, angle: Any, xp: Any) -> Any:
-        laws = {
-            "equidistant": lambda t: t,
-            "stereographic": lambda t: 2.0 * xp.tan(0.5 * t),
-            "equisolid": lambda t: 2.0 * xp.sin(0.5 * t),
-            "orthographic": lambda t: xp.sin(t),
-            "cylindrical": lambda t: xp.tan(t),
-        }
-        return c.centre + c.focal * laws[self.law](angle)
-
-    def angle(self, c: Any, value: Any, xp: Any) -> Any:
-        inverses = {
-            "equidistant": lambda r: r,
-            "stereographic": lambda r: 2.0 * xp.atan2(r, 2.0 + 0.0 * r),
-            "equisolid": lambda r: 2.0 * xp.asin(0.5 * r),
-            "orthographic": lambda r: xp.asin(r),
-            "cylindrical": lambda r: xp.atan2(r, 1.0 + 0.0 * r),
-        }
-        return inverses[self.law]((value - c.centre) / c.focal)
-
-
 @dataclass(frozen=True)
 class Epipolar(Target):
     """û = u(γ), v̂ = v(β): every map of this form keeps rows, provided both images share v."""
@@ -230,6 +132,9 @@ class Epipolar(Target):
     @property
     def constants(self) -> Constants:
         return {"u": self.u.constants, "v": self.v.constants}
+
+    def framed(self, left: float, top: float, across: float, down: float) -> Epipolar:
+        return Epipolar(self.u.framed(left, across), self.v.framed(top, down))
 
     def project_formula(self, c: Any, x: Any, y: Any, z: Any, xp: Any) -> tuple[Any, Any, Any]:
         gamma, beta = xp.atan2(x, xp.hypot(y, z)), xp.atan2(y, z)

@@ -19,7 +19,7 @@ from rectbench.metrics.energy import (
     energy_slice,
 )
 from rectbench.warps import Cubic, Epipolar, Rectification
-from rectbench.warps.targets import least_slope
+from rectbench.warps.profiles import least_slope
 
 
 @pytest.fixture(scope="module")

@@ -18,8 +18,7 @@ from rectbench.rendering.images import StereoPair
 from rectbench.rendering.truth import Truth
 from rectbench.reporting import Sources
 from rectbench.rigs import Rig
-from rectbench.warps import Rectification
-from rectbench.warps.targets import Cubic, Epipolar, Perspective, Radial
+from rectbench.warps import Cubic, Epipolar, Perspective, Radial, Rectification
 
 METHODS = {
     "conventional": (0.62, 0.9, 0.61),
