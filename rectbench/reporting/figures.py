@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from rectbench.bench.progress import Advance
 from rectbench.reporting.style import PAGE_INCHES, STYLE, encode
-from rectbench.reporting.writing import write_atomically
+from rectbench.writing import write_atomically
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

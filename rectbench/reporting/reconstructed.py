@@ -15,7 +15,7 @@ from rectbench.matching import Reconstruction
 from rectbench.reporting.panels import fit_into_box, panel_grid, write_head
 from rectbench.reporting.style import LOST, PAGE_INCHES, STYLE, encode, plain_log_ticks
 from rectbench.reporting.views import patches_of, splat, two_views
-from rectbench.reporting.writing import write_atomically
+from rectbench.writing import write_atomically
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -14,7 +14,7 @@ from rectbench.reporting.part_tables import all_tables
 from rectbench.reporting.run_folder import read_run
 from rectbench.reporting.sources import Sources, sources_of
 from rectbench.reporting.tables import SPELLINGS, Table
-from rectbench.reporting.writing import write_atomically
+from rectbench.writing import write_atomically
 
 MANIFEST = "figures/manifest.json"
 """What is drawn already, and which files earlier reports of this folder left."""

@@ -48,10 +48,11 @@ def read_native(path: str | os.PathLike[str], text: str, size: tuple[int, int] |
     `size` stands in for an image size that the file leaves out. Raises InvalidInput in one line
     that names file, key and what was expected there.
     """
-    return _read_rig(parse_document(text, str(path)), Given(size))
+    return read_fields(parse_document(text, str(path)), Given(size))
 
 
-def _read_rig(document: Section, given: Given) -> Rig:
+def read_fields(document: Section, given: Given) -> Rig:
+    """The rig in that content."""
     document.only((MARK, "name", "source", "cameras", "R_right_left", "t_right_left"))
     if document.text(MARK, f"the format's version, {VERSION}") != VERSION:
         raise document.fault(MARK, f"the format's version, {VERSION}")
@@ -68,13 +69,18 @@ def _read_rig(document: Section, given: Given) -> Rig:
 
 def write_rig(rig: Rig, path: str | os.PathLike[str]) -> None:
     """Write `rig` to `path`, whole or not at all; what was there before stays until then."""
+    replace_file(Path(path), dump(rig_fields(rig)))
+
+
+def rig_fields(rig: Rig) -> dict[str, Any]:
+    """The file's content as plain data."""
     content: dict[str, Any] = {MARK: int(VERSION), "name": rig.name}
     if rig.source:
         content["source"] = rig.source
     content["cameras"] = {"left": _camera_fields(rig.left), "right": _camera_fields(rig.right)}
     content["R_right_left"] = rig.R_right_left.tolist()
     content["t_right_left"] = rig.t_right_left.tolist()
-    replace_file(Path(path), dump(content))
+    return content
 
 
 def dump(content: Any) -> str:
@@ -152,5 +158,5 @@ FORMAT = RigFormat(
     "native",
     "rectbench's own YAML",
     lambda source: MARK in source.keys,
-    lambda sources, given: _read_rig(single(sources).document, given),
+    lambda sources, given: read_fields(single(sources).document, given),
 )
