@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +23,7 @@ sixteenth of 16 bits, and a few glints must not darken all else."""
 
 def read_images(left: str | Path, right: str | Path) -> Images:
     """Two image files as they are stored, grey or RGB(A), of any depth; InvalidInput for no image."""
-    return Images(_read(Path(left)), _read(Path(right)))
+    return Images(read_image(left), read_image(right))
 
 
 def grey8(image: NDArray[np.generic], side: str = "") -> Grey:
@@ -59,14 +61,44 @@ def _stretched(grey: NDArray[Any]) -> Grey:
     return stretched
 
 
-def _read(path: Path) -> NDArray[np.generic]:
+def read_image(path: str | Path) -> NDArray[np.generic]:
+    """An image file as it is stored: [H, W] grey or [H, W, 3 or 4] RGB(A), of the depth it has.
+
+    Depths that `cv2.remap` does not take are made the next wider one. Orientation tags are ignored: a
+    calibration is one of the sensor's own rows and columns. Raises InvalidInput for what is no image.
+    """
+    path = Path(path)
     if not path.is_file():
         raise InvalidInput(f"{path}: no such image")
-    image = cv2.imread(str(path), cv2.IMREAD_UNCHANGED)
+    try:
+        with _quiet_opencv():
+            image = cv2.imread(str(path), cv2.IMREAD_UNCHANGED)
+    except cv2.error as error:  # a header that promises more pixels than OpenCV takes
+        raise InvalidInput(f"{path}: OpenCV refuses it ({' '.join(str(error.err).split())})") from None
     if image is None:
         raise InvalidInput(f"{path}: not an image that OpenCV can read")
-    if image.ndim == 3:
-        to_rgb = {3: cv2.COLOR_BGR2RGB, 4: cv2.COLOR_BGRA2RGBA}.get(image.shape[2])
-        image = image if to_rgb is None else cv2.cvtColor(image, to_rgb)
-    pixels: NDArray[np.generic] = image
-    return pixels
+    if image.ndim == 3 and image.shape[2] >= 3:
+        image = image[..., [2, 1, 0, 3][: image.shape[2]]]
+    return np.ascontiguousarray(image.astype(_WIDER.get(image.dtype, image.dtype), copy=False))
+
+
+@contextmanager
+def _quiet_opencv() -> Iterator[None]:
+    """Without the words of its own that OpenCV has for a damaged file."""
+    level = cv2.utils.logging.setLogLevel(cv2.utils.logging.LOG_LEVEL_SILENT)
+    try:
+        yield
+    finally:
+        cv2.utils.logging.setLogLevel(level)
+
+
+_WIDER: dict[np.dtype[Any], np.dtype[Any]] = {
+    np.dtype(narrow): np.dtype(wide)
+    for narrow, wide in (
+        ("bool", "uint8"),
+        ("int8", "int16"),
+        ("int32", "float64"),
+        ("uint32", "float64"),
+        ("float16", "float32"),
+    )
+}

@@ -3,6 +3,7 @@
 from rectbench.metrics.coverage import coverage, dense_pixels
 from rectbench.metrics.distortion import Distortion, distortion, distortion_of, log_distortion
 from rectbench.metrics.energy import energy_convex_share
+from rectbench.metrics.frame import frame_costs
 from rectbench.metrics.jacobians import Jacobians
 from rectbench.metrics.order import order
 from rectbench.metrics.reconstruction import reconstruction_scores
@@ -21,6 +22,7 @@ __all__ = [
     "distortion_of",
     "energy_convex_share",
     "every_pixel",
+    "frame_costs",
     "log_distortion",
     "measure",
     "order",

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rectbench.cameras.arrays import FloatArray
+from rectbench.metrics.coverage import in_frame
 from rectbench.warps import Rectification, evaluation_pixels
 
 
@@ -30,6 +31,15 @@ class Jacobians:
             for warp in (rect.left, rect.right)
         )
         return cls(left.reshape(-1, 2, 2), right.reshape(-1, 2, 2))
+
+    @classmethod
+    def kept(cls, rect: Rectification, count: int = 2000) -> Jacobians:
+        """At those of about `count` pixels of each image that stay in the frame."""
+        sides = []
+        for warp in (rect.left, rect.right):
+            pixels = evaluation_pixels(warp.source, count)
+            sides.append(warp.jacobian(pixels[in_frame(warp.forward(pixels), rect.size)]))
+        return cls(*sides)
 
     @property
     def both(self) -> FloatArray:

@@ -33,6 +33,7 @@ class RowError:
                 *(f"row_error_{name}_px" for name in ("mean", "median", "rms", "p95", "max")),
                 "row_error_below_1px",
                 "row_error_source_mean_px",
+                "row_error_source_median_px",
                 "row_error_source_p95_px",
             ),
             math.nan,
@@ -46,6 +47,7 @@ class RowError:
                 "row_error_max_px": float(errors.max()),
                 "row_error_below_1px": float((errors <= 1).mean()),
                 "row_error_source_mean_px": float(in_source.mean()),
+                "row_error_source_median_px": float(np.median(in_source)),
                 "row_error_source_p95_px": float(np.quantile(in_source, 0.95)),
             }
         return {**summary, "row_error_matches": float(errors.size)}

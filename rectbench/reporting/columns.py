@@ -89,6 +89,7 @@ METRICS: tuple[Column, ...] = (
         "row error, source",
         "Row error in pixels of the source images, so that shrinking the output gains nothing.",
     ),
+    _pixels("row_error_source_median_px", "row error, source, median", "Median of those."),
     _pixels("row_error_source_p95_px", "row error, source, p95", "95th percentile of those."),
     _count("row_error_matches", "correspondences", "True correspondences that the row error is taken over."),
     _pixels(

@@ -1,7 +1,10 @@
 """Warps into the rectified frame, lookup tables, triangulation, and what a rectifier is."""
 
+from rectbench.warps.description import load_rectification, save_rectification
 from rectbench.warps.extent import ViewAngles, centre_rays, perspective_size, view_angles
 from rectbench.warps.frame import centre_resolution_px, rectifying_rotations, refuse_epipole_in_view
+from rectbench.warps.framing import Framing, framed
+from rectbench.warps.opencv_form import OpenCVForm, opencv_form
 from rectbench.warps.pinhole_view import HomographyRectifier, PinholeView
 from rectbench.warps.profiles import Cubic, Profile, Radial
 from rectbench.warps.rectification import Rectification
@@ -14,9 +17,11 @@ __all__ = [
     "Cubic",
     "Epipolar",
     "Framed",
+    "Framing",
     "HomographyRectifier",
     "Images",
     "Matches",
+    "OpenCVForm",
     "Options",
     "Perspective",
     "PinholeView",
@@ -31,11 +36,15 @@ __all__ = [
     "centre_rays",
     "centre_resolution_px",
     "evaluation_pixels",
+    "framed",
+    "load_rectification",
+    "opencv_form",
     "option",
     "outline_pixels",
     "perspective_size",
     "pose_problem",
     "rectifying_rotations",
     "refuse_epipole_in_view",
+    "save_rectification",
     "view_angles",
 ]

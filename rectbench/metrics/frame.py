@@ -1,0 +1,36 @@
+"""What a frame costs: how fine the image is, what of the view it keeps, and what it does to pixels."""
+
+from __future__ import annotations
+
+from rectbench.metrics.coverage import coverage
+from rectbench.metrics.distortion import log_distortion
+from rectbench.metrics.jacobians import Jacobians
+from rectbench.metrics.sampling import every_pixel
+from rectbench.rigs import Rig
+from rectbench.warps import Rectification, centre_resolution_px
+from rectbench.warps.framing import focal_px
+
+
+def frame_costs(rect: Rectification, rig: Rig) -> dict[str, float]:
+    """The numbers by which one frame of a rectified pair is held against another.
+
+    - `width_px`, `height_px` of the rectified images; `focal_px` on the rectified frame's axis, and
+      `magnification`, that against the source's at its centre.
+    - `coverage_pixels`, `coverage_solid_angle`, `coverage_overlap`, `valid_output`, see `coverage`.
+    - `sampling_lost`, `sampling_invented`, see `every_pixel`.
+    - `log_distortion_kept`: log distortion over the pixels that stay in the frame.
+    """
+    focal = focal_px(rect)
+    shares, sampled = coverage(rect, rig), every_pixel(rect)
+    return {
+        "width_px": float(rect.size[0]),
+        "height_px": float(rect.size[1]),
+        "focal_px": focal,
+        "magnification": focal / centre_resolution_px(rig),
+        **{
+            name: shares[name]
+            for name in ("coverage_pixels", "coverage_solid_angle", "coverage_overlap", "valid_output")
+        },
+        **{name: sampled[name] for name in ("sampling_lost", "sampling_invented")},
+        "log_distortion_kept": log_distortion(Jacobians.kept(rect))["log_distortion"],
+    }
