@@ -15,13 +15,12 @@ from rectbench.cameras.projection import as_points
 from rectbench.errors import InvalidInput
 from rectbench.rigs import Rig
 from rectbench.warps.frame import rectifying_rotations, signed_baseline_m
+from rectbench.warps.resampling import Filter, Resampler
 from rectbench.warps.tables import FloatMap, lookup_table
 from rectbench.warps.targets import Target
 from rectbench.warps.warp import Warp
 
 Side = Literal["left", "right"]
-REMAPPED_TYPES = tuple(map(np.dtype, ("uint8", "uint16", "int16", "float32", "float64")))
-"""What `cv2.remap` resamples."""
 LARGEST_SIDE_PX = 32766
 """`cv2.remap` takes no larger image."""
 
@@ -128,25 +127,17 @@ class Rectification:
         left: NDArray[np.generic],
         right: NDArray[np.generic],
         interpolation: int = cv2.INTER_LINEAR,
+        filter: Filter = "point",
     ) -> tuple[NDArray[np.generic], NDArray[np.generic]]:
-        """Both images resampled into the rectified frame, black where the source shows nothing."""
-        return self._remap_one("left", left, interpolation), self._remap_one("right", right, interpolation)
+        """Both images resampled into the rectified frame, black where the source shows nothing.
 
-    def _remap_one(self, side: Side, image: NDArray[np.generic], interpolation: int) -> NDArray[np.generic]:
-        source = self.warp(side).source
-        image = np.asarray(image)
-        if image.dtype not in REMAPPED_TYPES:
-            names = ", ".join(map(str, REMAPPED_TYPES))
-            raise InvalidInput(f"the {side} image holds {image.dtype}; expected one of {names}")
-        if image.shape[:2] != (source.height, source.width):
-            raise InvalidInput(
-                f"the {side} image is {image.shape[1]}x{image.shape[0]} px; "
-                f"its camera has {source.width}x{source.height}"
-            )
-        resampled: NDArray[np.generic] = cv2.remap(
-            image, *self.maps(side), interpolation, borderMode=cv2.BORDER_CONSTANT
+        The filter is "point", `cv2.remap`'s, or "area", which does not alias where the warp shrinks
+        the image; see `Resampler`, which also serves many images with one set of tables.
+        """
+        return (
+            Resampler.of(self, "left", filter, interpolation)(left),
+            Resampler.of(self, "right", filter, interpolation)(right),
         )
-        return resampled
 
     def triangulate(self, px_rect: ArrayLike, disparity_px: ArrayLike) -> FloatArray:
         """Points [..., 3] in the left camera's frame, metres, from disparities û_left - û_right.

@@ -48,6 +48,15 @@ class Warp:
         entries, _ = evaluate_points(self.jacobian_formula, self.constants, as_points(px, 2, "px"))
         return entries.reshape(*entries.shape[:-1], 2, 2)
 
+    def inverse_jacobian(self, px_rect: ArrayLike) -> FloatArray:
+        """d(source)/d(rectified) [..., 2, 2] at rectified pixels [..., 2]; NaN where there is none.
+
+        The inverse of `jacobian` at the source pixel: its columns span what a rectified pixel covers there.
+        """
+        points = as_points(px_rect, 2, "px_rect")
+        entries, _ = evaluate_points(self._inverse_jacobian_formula, self.constants, points)
+        return entries.reshape(*entries.shape[:-1], 2, 2)
+
     def _forward_formula(self, c: Any, u: Any, v: Any, xp: Any) -> tuple[Any, Any, Any]:
         x, y, z, seen = self.source.unproject_formula(c.source, u, v, xp)
         u_rect, v_rect, ok = self.target.project_formula(c.target, *rotated(c.R, x, y, z), xp)
@@ -71,6 +80,13 @@ class Warp:
             _dot(dv_rect, down),
             ok & seen,
         )
+
+    def _inverse_jacobian_formula(self, c: Any, u_rect: Any, v_rect: Any, xp: Any) -> tuple[Any, ...]:
+        x, y, z, ok = self.target.unproject_formula(c.target, u_rect, v_rect, xp)
+        du_rect, dv_rect, _ = projected_partials(self.target, c.target, x, y, z, xp)
+        across, down = (rotated_back(c.R, *d) for d in ray_derivatives(du_rect, dv_rect))
+        du, dv, seen = projected_partials(self.source, c.source, *rotated_back(c.R, x, y, z), xp)
+        return _dot(du, across), _dot(du, down), _dot(dv, across), _dot(dv, down), ok & seen
 
 
 Vector = tuple[Any, Any, Any]
