@@ -24,7 +24,7 @@ from rectbench.warps import Matches
 LEAST_TAGS = 4
 """Tags seen in both images; of fewer, a chance pattern may be one."""
 NEIGHBOURS, AGREEMENT_STEPS = 12, 10
-"""Corners about a tag's corner that say where it should be, and steps of the fit that takes no outlier for one."""
+"""Corners about a tag's corner that say where it should be, and steps of the robust fit to them."""
 AGREEING_PX, WITHIN_MEDIANS = 0.5, 4.0
 """A corner farther off than both, the latter times the median, is not the same in both images."""
 BEGINNINGS = ((4, 4), (6, 5), (3, 3))
@@ -38,7 +38,8 @@ LEAST_CONTRAST = 20.0
 EVEN_CONTRAST = 0.3
 """Of the median contrast, what each square must have to its neighbours."""
 NEAR_GUESS, WITHIN_SQUARE = 0.35, 0.3
-"""How far a further corner may be from where it is expected, and how far from it squares are looked at: squares."""
+"""How far a further corner may be from where it is expected, and how far from it squares are looked at;
+in squares."""
 RIM = 0.3
 """How far beyond its outer squares the board is looked for to go on, in squares."""
 GOES_ON = 0.5
@@ -192,7 +193,7 @@ def _whole_board(image: Grey, grid: FloatArray) -> _Chessboard | None:
 
 
 def _grown(image: Grey, grid: FloatArray) -> FloatArray:
-    """The corners [R, C, 2] with the rows and columns beyond them: OpenCV stops where a lens bends a board."""
+    """The corners [R, C, 2] with rows and columns beyond them: OpenCV stops where a lens bends a board."""
     blurred, kept = cv2.blur(image, (3, 3)), 0
     while kept < 4:
         row = _next_row(image, blurred, grid)
@@ -202,7 +203,7 @@ def _grown(image: Grey, grid: FloatArray) -> FloatArray:
 
 
 def _next_row(image: Grey, blurred: Grey, grid: FloatArray) -> FloatArray | None:
-    """The corners [C, 2] before the first row, where all of them are corners of squares, dark and light in turn."""
+    """The corners [C, 2] before the first row, where squares meet there, dark and light in turn; or None."""
     guess = 3 * grid[0] - 3 * grid[1] + grid[2]
     height, width = image.shape
     if not np.isfinite(guess).all() or guess.min() < 1 or (guess > [width - 2, height - 2]).any():
@@ -222,12 +223,12 @@ def _next_row(image: Grey, blurred: Grey, grid: FloatArray) -> FloatArray | None
     for light, dark in ((rising, falling), (falling, rising)):
         contrast = np.where(even, light.min(axis=0) - dark.max(axis=0), dark.min(axis=0) - light.max(axis=0))
         if contrast.min() > LEAST_CONTRAST:
-            return row
+            return np.asarray(row)
     return None
 
 
 def _alternation(image: Grey, grid: FloatArray) -> int:
-    """Whether the first square within the corners [R, C, 2] is light (1) or dark (-1); 0: no whole chessboard.
+    """Whether the first square within the corners [R, C, 2] is light (1) or dark (-1); 0: no whole board.
 
     All squares, the outer ones that the corners only bound from within included, have to be dark and
     light in turn, and beyond these nothing may go on so: a board that is cut off could be taken for a
@@ -281,7 +282,7 @@ def _levels(image: Grey, pixels: FloatArray) -> FloatArray:
 
 
 def _refined(image: Grey, corners: FloatArray, window: float) -> FloatArray:
-    """Corners [R, C, 2], neighbours along C, where gradients are square to the lines to them; NaN where none is."""
+    """Corners [R, C, 2], neighbours along C, to a fraction of a pixel; NaN where there is none."""
     shortest = float(np.linalg.norm(np.diff(corners, axis=1), axis=-1).min())
     half = int(np.clip(window * shortest, LEAST_WINDOW, MOST_WINDOW))
     start = corners.reshape(-1, 1, 2).astype(np.float32)
