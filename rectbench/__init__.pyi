@@ -1,8 +1,11 @@
 from . import metrics as metrics
 from .api import estimate_pose as estimate_pose
 from .api import rectify as rectify
+from .api import rectify_images as rectify_images
 from .api import render as render
 from .api import run as run
+from .bench.choosing import Choice as Choice
+from .bench.choosing import best_method as best_method
 from .bench.claims import Claim as Claim
 from .bench.claims import Statement as Statement
 from .bench.report_spec import Group as Group
@@ -37,6 +40,7 @@ from .rigs import load_rig as load_rig
 from .rigs import rig_names as rig_names
 from .warps import Cubic as Cubic
 from .warps import Epipolar as Epipolar
+from .warps import Framing as Framing
 from .warps import HomographyRectifier as HomographyRectifier
 from .warps import Images as Images
 from .warps import Matches as Matches
@@ -54,11 +58,15 @@ from .warps import Warp as Warp
 from .warps import centre_rays as centre_rays
 from .warps import centre_resolution_px as centre_resolution_px
 from .warps import evaluation_pixels as evaluation_pixels
+from .warps import framed as framed
+from .warps import load_rectification as load_rectification
+from .warps import opencv_form as opencv_form
 from .warps import option as option
 from .warps import outline_pixels as outline_pixels
 from .warps import perspective_size as perspective_size
 from .warps import rectifying_rotations as rectifying_rotations
 from .warps import refuse_epipole_in_view as refuse_epipole_in_view
+from .warps import save_rectification as save_rectification
 from .warps import view_angles as view_angles
 
 __version__: str

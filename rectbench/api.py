@@ -18,11 +18,13 @@ from rectbench.errors import InvalidInput
 from rectbench.matching.features import RATIO
 from rectbench.matching.pose import WORKING_PIXELS, PoseEstimate, pose_from_images
 from rectbench.rigs import Rig, load_rig
-from rectbench.warps import Images, Matches, Rectification, pose_problem
+from rectbench.rigs.loading import RigSource
+from rectbench.warps import Framing, Images, Matches, Rectification, pose_problem
 
 if TYPE_CHECKING:
     import pandas as pd
 
+    from rectbench.bench.rectified_images import RectifiedImages
     from rectbench.bench.report_spec import Report
     from rectbench.rendering.images import StereoPair
     from rectbench.rendering.truth import Truth
@@ -69,6 +71,78 @@ def rectify(
         seed=_checked_seed(seed),
     )
     return fit(plugin, problem, checked_options(plugin, options))
+
+
+def rectify_images(
+    left: str | Path,
+    right: str | Path,
+    rig: Rig | RigSource | Sequence[RigSource] | None = None,
+    out: str | Path = "rectified",
+    *,
+    method: str | Path | None = None,
+    options: Mapping[str, Any] | None = None,
+    framing: Framing | None = None,
+    antialias: bool = False,
+    tables: Sequence[str] = ("npz", "opencv", "fixed"),
+    measured_pairs: int = 5,
+    seed: int = 0,
+    max_angle_deg: float | None = None,
+    unit: str | None = None,
+    progress: bool | None = None,
+) -> RectifiedImages:
+    """Rectify photographs into a folder: images, masks, lookup tables, descriptions, metrics.
+
+    Parameters
+    ----------
+    left, right : two image files, two folders, or two patterns such as "left/*.png", paired by name.
+    rig : a rig, its calibration's files or a rig's name, see `load_rig`. Without one, the methods that
+        work from matches alone run, on pinholes of a view that is assumed.
+    out : the folder.
+    method : a method's name or file, or `best`: all that apply are measured, see `best_method`. By
+        default `local-homography`; without a rig `hartley`.
+    options : the method's own.
+    framing : what is shown and how large; the method's own frame by default.
+    antialias : whether to average over the footprint of a pixel where the image shrinks.
+    tables : kinds of lookup tables: npz, opencv (FileStorage), fixed (CV_16SC2).
+    measured_pairs : so many pairs, spread over all, have their rows measured by their own features and, if
+        they show one, a calibration board.
+    seed : of random choices.
+    max_angle_deg, unit : the lenses' image circle, and what translations are in, where the calibration
+        does not tell.
+    progress : a bar on stderr; where there are several pairs and a terminal by default.
+
+    Returns what was made; see `rectbench.bench.rectified_images.rectify_images` for the files, and for what
+    is raised.
+    """
+    from rectbench.bench.image_pairs import image_pairs
+    from rectbench.bench.progress import progress_for
+    from rectbench.bench.rectified_images import Wanted, first_readable, rectify_images
+    from rectbench.bench.run_folder import check_writable
+    from rectbench.matching.uncalibrated import uncalibrated
+
+    check_writable(Path(out))
+    wanted = Wanted(
+        method=str(method or ("hartley" if rig is None else "local-homography")),
+        options=options or {},
+        framing=framing or Framing(),
+        tables=tuple(tables),
+        filter="area" if antialias else "point",
+        measured_pairs=measured_pairs,
+        seed=_checked_seed(seed),
+        without_calibration=rig is None,
+    )
+    pairs = image_pairs(str(left), str(right))
+    _, images = first_readable(pairs)
+    if rig is None:
+        calibrated, matches = uncalibrated(images, seed=seed)
+    else:
+        size = images.left.shape[1], images.left.shape[0]
+        calibrated = rig if isinstance(rig, Rig) else load_rig(rig, size=size, unit=unit)
+        matches = None
+    if max_angle_deg is not None:
+        calibrated = calibrated.within(max_angle_deg)
+    bars = progress_for(False if len(pairs) == 1 else progress)
+    return rectify_images(pairs, calibrated, wanted, Path(out), matches=matches, progress=bars)
 
 
 def estimate_pose(

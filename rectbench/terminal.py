@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, get_args, get_origin
 
@@ -12,10 +12,12 @@ from rich.table import Table
 from rich.text import Text
 
 if TYPE_CHECKING:
+    from rectbench.bench.choosing import Choice
     from rectbench.bench.comparing import Comparison
     from rectbench.bench.conformance import Finding as CheckFinding
     from rectbench.bench.doctor import Finding
     from rectbench.bench.gating import Verdict
+    from rectbench.bench.rectified_images import RectifiedImages
     from rectbench.matching import PoseEstimate
     from rectbench.rigs import Rig
 
@@ -193,6 +195,69 @@ def show_pose(estimate: PoseEstimate, rig: Rig) -> None:
         screen.print(Text(f"warning: {estimate.note}", style="yellow"), soft_wrap=True)
 
 
+_COSTS: tuple[tuple[str, Callable[[Mapping[str, float]], str]], ...] = (
+    ("size", lambda c: f"{c['width_px']:.0f}x{c['height_px']:.0f} px"),
+    (
+        "resolution in the middle",
+        lambda c: f"{c['focal_px']:.1f} px/rad, {c['magnification']:.0%} of the source's",
+    ),
+    ("source pixels kept", lambda c: f"{c['coverage_pixels']:.1%}"),
+    ("field of view kept", lambda c: f"{c['coverage_solid_angle']:.1%}"),
+    ("overlap kept", lambda c: f"{c['coverage_overlap']:.1%}"),
+    ("output that shows anything", lambda c: f"{c['valid_output']:.1%}"),
+    ("pixels lost by shrinking", lambda c: f"{c['sampling_lost']:.1%}"),
+    ("pixels invented by stretching", lambda c: f"{c['sampling_invented']:.1%}"),
+    ("log distortion", lambda c: f"{c['log_distortion_kept']:.3f}"),
+)
+"""What a frame costs, by the numbers of `frame_costs`."""
+
+
+def show_rectified(made: RectifiedImages) -> None:
+    """What a rectification costs, how good its rows are, what was left out, and where the files are."""
+    screen = console()
+    if made.choice is not None:
+        _show_choice(screen, made.choice)
+    columns = ["this frame"] + ([] if made.own_costs is None else ["the method's own frame"])
+    table = _table(made.method, *columns)
+    for name, text in _COSTS:
+        costs = (made.costs, made.own_costs)
+        table.add_row(name, *(text(cost) for cost in costs if cost is not None))
+    if "averaged_share" in made.costs:
+        share, longest = made.costs["averaged_share"], made.costs["longest_footprint_px"]
+        table.add_row("averaged over several source pixels", f"{share:.1%}, over up to {longest:.1f} px")
+    for kind, words in (("board", "rows, corners of a board"), ("features", "rows, features")):
+        if f"row_error_{kind}_median_px" in made.rows:
+            median, p95, count = (
+                made.rows[f"row_error_{kind}_{n}"] for n in ("median_px", "p95_px", "matches")
+            )
+            table.add_row(words, f"{median:.2f} px in the median, {p95:.2f} px at 95 %, of {count:.0f}")
+    screen.print(table)
+    for result in made.pairs:
+        if result.reason:
+            screen.print(Text(f"left out: {result.reason}", style="yellow"), soft_wrap=True)
+        elif result.note:
+            screen.print(Text(f"{result.pair.name}: {result.note}", style="dim"), soft_wrap=True)
+    if made.warning:
+        screen.print(Text(f"warning: {made.warning}", style="yellow"), soft_wrap=True)
+    for file in made.files if len(made.pairs) == 1 else made.files[-1:]:
+        print(file)
+
+
+def _show_choice(screen: Console, choice: Choice) -> None:
+    table = _table("method", "log distortion", "rows [px]", "size", "")
+    for candidate in choice.candidates:
+        found = candidate.measured
+        rows = found.get("row_error_source_median_px")
+        size = f"{found['width_px']:.0f}x{found['height_px']:.0f}" if found else ""
+        numbers = (
+            f"{found['log_distortion_kept']:.3f}" if found else "",
+            "" if rows is None else f"{rows:.2f}",
+        )
+        table.add_row(candidate.method, *numbers, size, Text(candidate.reason, style="yellow"))
+    screen.print(table)
+    screen.print(f"{choice.why}.\n", soft_wrap=True)
+
+
 def show_checks(method: str, findings: Iterable[CheckFinding]) -> int:
     """The conformance table; returns how many checks failed."""
     screen, table, failed = console(), _table("rig", "check", "result", "found"), 0
@@ -225,5 +290,5 @@ def _table(*headings: str) -> Table:
     table = Table(box=None, pad_edge=False)
     columns = headings if len(headings) > 1 else (*headings, "")
     for heading in columns:
-        table.add_column(heading, header_style="bold", overflow="fold")
+        table.add_column(Text(heading), header_style="bold", overflow="fold")  # [px] is no markup
     return table

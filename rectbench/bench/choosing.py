@@ -125,6 +125,11 @@ def best_method(
     return Choice(tuple(sorted(tried, key=lambda candidate: _rank(candidate, tried))), chosen)
 
 
+def uncalibrated_methods() -> list[str]:
+    """The methods that need no calibration: they work from matches or images alone."""
+    return [plugin.name for plugin in registry("methods").plugins() if "pose" not in plugin.value.needs]
+
+
 def _tried(plugin: Plugin, problem: Problem, framing: Framing, trusted: Matches | None) -> Candidate:
     if "images" in plugin.value.needs and problem.images is None:
         return Candidate(plugin.name, status="unsupported", reason="works from images, and there are none")

@@ -70,6 +70,11 @@ def read_options(texts: Sequence[str]) -> OptionSets:
     return options
 
 
+def read_method_options(texts: Sequence[str] | None) -> dict[str, Any]:
+    """Options of one method of texts `name=value`."""
+    return read_options([f"method.{text}" for text in texts or ()]).get("method", {})
+
+
 def parsed(text: str) -> Any:
     """A value as TOML reads it; a word that TOML does not know is itself."""
     try:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import logging
 import sys
 
-from rectbench.cli import machine, names, photographs, rendering, running
+from rectbench.cli import machine, names, photographs, rectifying, rendering, running
 from rectbench.cli.app import WRONG_USAGE, app
 from rectbench.errors import RectbenchError
 
@@ -21,7 +21,7 @@ for verb in (
     running.gate,
     running.compare,
     rendering.render,
-    photographs.rectify,
+    rectifying.rectify,
     photographs.pose,
     photographs.reconstruct,
     machine.check,

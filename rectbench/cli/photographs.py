@@ -1,4 +1,4 @@
-"""The verbs for images and calibrations of one's own."""
+"""The verbs for an image pair of one's own: its pose, and its reconstruction."""
 
 from __future__ import annotations
 
@@ -19,27 +19,8 @@ from rectbench.cli.app import (
 )
 
 if TYPE_CHECKING:
-    from rectbench.rendering.images import StereoPair
-    from rectbench.warps import Rectification
-
-
-def rectify(
-    left: LeftImage,
-    right: RightImage,
-    rig: RigFiles,
-    out: Annotated[Path, typer.Option("--out", "-o", help="Folder for what is made.")] = Path("rectified"),
-    method: Method = "local-homography",
-    option: MethodOptions = None,
-    seed: MethodSeed = 0,
-    max_angle_deg: MaxAngle = None,
-    unit: Unit = None,
-) -> None:
-    """Rectify an image pair: rectified images, masks, lookup tables and a preview with scan lines."""
-    from rectbench.bench.rectified_files import write_rectified
-
-    pair, rectification = _rectified(left, right, rig, method, option, seed, max_angle_deg, unit)
-    for file in write_rectified(rectification, pair, out):
-        print(file)
+    from rectbench.rigs import Rig
+    from rectbench.warps import Images
 
 
 def pose(
@@ -61,12 +42,9 @@ def pose(
     """
     from rectbench import api, terminal
     from rectbench.matching.images import read_images
-    from rectbench.rigs import load_rig
 
     images = read_images(left, right)
-    calibrated = load_rig(rig[0] if len(rig) == 1 else rig, size=images.left.shape[1::-1], unit=unit)
-    if max_angle_deg is not None:
-        calibrated = calibrated.within(max_angle_deg)
+    calibrated = _calibrated(rig, images, max_angle_deg, unit)
     estimate = api.estimate_pose(images, calibrated, detector=detector, seed=seed)
     terminal.show_pose(estimate, calibrated)
     if out is not None:
@@ -97,38 +75,25 @@ def reconstruct(
     ] = 1e6,
 ) -> None:
     """Reconstruct an image pair in 3-D: a coloured point cloud, depth, disparity and a picture."""
+    from rectbench import api
+    from rectbench.bench.configuring import read_method_options
     from rectbench.matching import reconstruct
+    from rectbench.matching.images import read_images
     from rectbench.matching.matchers import matcher_named
     from rectbench.reporting.reconstructed import write_reconstruction
 
     matcher_named(matcher)  # a wrong name is told before the work begins
-    pair, rectification = _rectified(left, right, rig, method, option, seed, max_angle_deg, unit)
-    found = reconstruct(
-        rectification, pair.left, pair.right, matcher, pixels=pixels, nearest_baselines=nearest_baselines
-    )
+    images = read_images(left, right)
+    calibrated = _calibrated(rig, images, max_angle_deg, unit)
+    rect = api.rectify(calibrated, method, images=images, seed=seed, **read_method_options(option))
+    found = reconstruct(rect, *images, matcher, pixels=pixels, nearest_baselines=nearest_baselines)
     for file in write_reconstruction(found, out):
         print(file)
 
 
-def _rectified(
-    left: Path,
-    right: Path,
-    rig: list[str],
-    method: str,
-    option: list[str] | None,
-    seed: int,
-    max_angle_deg: float | None,
-    unit: str | None,
-) -> tuple[StereoPair, Rectification]:
-    """The images of two files, and the rectification of their rig."""
-    from rectbench import api
-    from rectbench.bench.configuring import read_options
-    from rectbench.rendering.images import StereoPair
+def _calibrated(rig: list[str], images: Images, max_angle_deg: float | None, unit: str | None) -> Rig:
+    """The rig of calibration files, its lenses held to their image circle."""
     from rectbench.rigs import load_rig
 
-    pair = StereoPair.read(left, right)
-    calibrated = load_rig(rig[0] if len(rig) == 1 else rig, size=pair.left.shape[1::-1], unit=unit)
-    if max_angle_deg is not None:
-        calibrated = calibrated.within(max_angle_deg)
-    options = read_options([f"method.{text}" for text in option or []]).get("method", {})
-    return pair, api.rectify(calibrated, method, images=pair, seed=seed, **options)
+    calibrated = load_rig(rig, size=images.left.shape[1::-1], unit=unit)
+    return calibrated if max_angle_deg is None else calibrated.within(max_angle_deg)

@@ -31,6 +31,7 @@ from rectbench.warps.profiles import Cubic, FramedProfile, Profile, Radial
 from rectbench.warps.rectification import Rectification
 from rectbench.warps.targets import Epipolar, Framed, Perspective, Target
 from rectbench.warps.warp import Warp
+from rectbench.writing import write_atomically
 
 MARK = "rectbench_rectification"
 VERSION = "1"
@@ -58,7 +59,7 @@ HEADER = """\
 
 def save_rectification(rect: Rectification, path: str | os.PathLike[str], **facts: Any) -> None:
     """Write a rectification's description; `facts` are plain data put first, such as the method's name."""
-    Path(path).write_text(rectification_text(rect, **facts), encoding="utf-8")
+    write_atomically(Path(path), rectification_text(rect, **facts))
 
 
 def rectification_text(rect: Rectification, **facts: Any) -> str:

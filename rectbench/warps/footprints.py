@@ -177,7 +177,9 @@ def _patch(
     box = tuple(_extent(mask.any(axis=axis)) for axis in (1, 0))
     steps = [spread[:, k][:, *box] / math.sqrt(max(n * n - 1, 1)) for k, n in enumerate(counts)]
     first = middle[:, *box] - sum((n - 1) / 2 * step for n, step in zip(counts, steps, strict=True))
-    rows, columns = (slice(whole.start + part.start, whole.start + part.stop) for whole, part in zip(place, box))
+    rows, columns = (
+        slice(whole.start + part.start, whole.start + part.stop) for whole, part in zip(place, box)
+    )
     return Patch((rows, columns), mask[box], level, counts, *map(np.float32, (first, steps)))
 
 

@@ -89,6 +89,8 @@ class Framing:
         _check_numbers("fov_deg", self.fov_deg, 2, "two angles in degrees, between 0 and 360", 0, 360)
         sides = f"width and height from 1 to {LARGEST_SIDE_PX} px"
         _check_numbers("size", self.size, 2, sides, 0, LARGEST_SIDE_PX + 1)
+        if self.size is not None and any(side != int(side) for side in self.size):
+            raise InvalidInput(f"size is {self.size!r}; expected whole pixels")
         if self.focal_px != "source":
             _check_numbers("focal_px", self.focal_px, 1, "a number of pixels above 0, or source", 0)
         _check_numbers("pixels", self.pixels, 1, "a number of pixels from 1 on", 0)
