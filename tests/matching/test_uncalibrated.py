@@ -21,7 +21,7 @@ def pinhole_rig(focal: float) -> rb.Rig:
 
 def corner_pair(rig: rb.Rig) -> Images:
     """Photographs into a corner of the room: of a single wall, matches would leave the geometry open."""
-    aside = cv2.Rodrigues(np.radians([12.0, 40.0, 0.0]))[0]
+    aside = cv2.Rodrigues(np.radians([12.0, 25.0, 0.0]))[0]
     left = photograph(rig.left, aside, np.zeros(3))
     return Images(
         left, photograph(rig.right, rig.R_right_left @ aside, aside.T @ rig.centre_right_in_left, noise=2)
