@@ -236,6 +236,15 @@ def as_jets(tree: Any) -> Any:
     return constant(tree)
 
 
+def without_partials(tree: Any) -> Any:
+    """The same constants as jets that hang on nothing."""
+    if isinstance(tree, SimpleNamespace):
+        return SimpleNamespace(**{name: without_partials(value) for name, value in vars(tree).items()})
+    if isinstance(tree, tuple):
+        return tuple(without_partials(value) for value in tree)
+    return Jet(constant(tree).value)
+
+
 def opaque(tree: Any) -> Any:
     """Constants as Dr.Jit variables: as literals, each new camera would be a new kernel to compile."""
     import drjit as dr

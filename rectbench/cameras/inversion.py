@@ -13,6 +13,7 @@ from rectbench.cameras.arrays import (
     constant,
     repeat_until_settled,
     variables,
+    without_partials,
 )
 from rectbench.cameras.domain import PIXEL_SLACK
 
@@ -62,12 +63,15 @@ def inverse(
     """x in [0, high] with formula(c, x, xp) = target; the formula rises from 0 there, up to `most`.
 
     See `invert_monotone`; the slope is a jet's. A target beyond `most` gives `high`. Where the target
-    is a jet itself, the answer carries its derivatives: those of the inverse, not of the steps to it.
+    or the constants are jets, the answer carries their derivatives: those of the inverse, not of the
+    steps to it. From f(c, x) = target, dx = (d target - ∂f/∂c dc) / (∂f/∂x).
     """
     if isinstance(target, Jet):
         high, most, start = (constant(number).value for number in (high, most, start))
-        x = inverse(formula, c, target.value, high, most, start, xp.xp)
-        return target.chain(x, 1.0 / formula(c, *variables(x), xp).partials[0])
+        plain = without_partials(c)
+        x = inverse(formula, plain, target.value, high, most, start, xp.xp)
+        slope = formula(plain, *variables(x), xp).partials[0]
+        return (target - formula(c, constant(x), xp)).chain(x, 1.0 / slope)
 
     def value_and_slope(x: Any) -> tuple[Any, Any]:
         jet = formula(as_jets(c), *variables(x), JetNamespace(xp))

@@ -39,6 +39,7 @@ from rectbench.matching.evidence import (
 from rectbench.matching.features import RATIO, match_features
 from rectbench.matching.robust import consensus, deviation, locally_optimised
 from rectbench.rigs import Rig
+from rectbench.rigs.covariance import RigCovariance
 from rectbench.warps import Images, Matches
 
 LEAST_MATCHES = 8
@@ -120,6 +121,10 @@ class PoseEstimate:
                 f"and {direction_deg:.0f} of direction"
             )
         return ""
+
+    def rig_covariance(self, rig: Rig) -> RigCovariance:
+        """How sure the pose of `self.rig(rig)` is; its lenses and its baseline's length count as exact."""
+        return RigCovariance.of_direction(self.covariance, rig.baseline_m, "estimated from the images")
 
     def rig(self, rig: Rig) -> Rig:
         """The rig with its own cameras and baseline length, and this pose."""

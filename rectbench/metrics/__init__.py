@@ -1,4 +1,4 @@
-"""What a rectification is scored by: distortion, sampling, row error, coverage, order."""
+"""What a rectification is scored by: distortion, sampling, row error, coverage, order, uncertainty."""
 
 from rectbench.metrics.coverage import coverage, dense_pixels
 from rectbench.metrics.distortion import Distortion, distortion, distortion_of, log_distortion
@@ -10,11 +10,13 @@ from rectbench.metrics.reconstruction import reconstruction_scores
 from rectbench.metrics.rows import RowError, row_error
 from rectbench.metrics.sampling import every_pixel, per_pixel
 from rectbench.metrics.scoring import distortion_columns, measure
+from rectbench.metrics.uncertainty import Uncertainty, uncertainty
 
 __all__ = [
     "Distortion",
     "Jacobians",
     "RowError",
+    "Uncertainty",
     "coverage",
     "dense_pixels",
     "distortion",
@@ -29,4 +31,5 @@ __all__ = [
     "per_pixel",
     "reconstruction_scores",
     "row_error",
+    "uncertainty",
 ]
