@@ -36,6 +36,8 @@ from .rendering.world import Mesh as Mesh
 from .rendering.world import Sun as Sun
 from .rendering.world import World as World
 from .rigs import Rig as Rig
+from .rigs import RigCovariance as RigCovariance
+from .rigs import load_covariance as load_covariance
 from .rigs import load_rig as load_rig
 from .rigs import rig_names as rig_names
 from .warps import Cubic as Cubic

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, get_args, get_origin
@@ -19,7 +20,8 @@ if TYPE_CHECKING:
     from rectbench.bench.gating import Verdict
     from rectbench.bench.rectified_images import RectifiedImages
     from rectbench.matching import PoseEstimate
-    from rectbench.rigs import Rig
+    from rectbench.metrics import Uncertainty
+    from rectbench.rigs import Rig, RigCovariance
 
 WIDE = 160
 """Columns assumed where the output is no terminal, so that a pipe gets whole lines."""
@@ -256,6 +258,47 @@ def _show_choice(screen: Console, choice: Choice) -> None:
         table.add_row(candidate.method, *numbers, size, Text(candidate.reason, style="yellow"))
     screen.print(table)
     screen.print(f"{choice.why}.\n", soft_wrap=True)
+
+
+def show_uncertainty(found: Uncertainty, covariance: RigCovariance) -> None:
+    """What an uncertain calibration does to rows and distances, a line for each distance; and whence."""
+    screen = console()
+    screen.print(Text(f"calibration: {covariance.source}"), soft_wrap=True)
+    table = _table(
+        "points at",
+        "row error σ",
+        "95 %",
+        "largest",
+        "mean |row error|",
+        "distance σ",
+        "95 %",
+        "with matching",
+    )
+    numbers = found.numbers()
+    for row in numbers:
+        share = (
+            "depth_sigma_median_share",
+            "depth_sigma_p95_share",
+            "depth_sigma_median_matched_share",
+        )
+        table.add_row(
+            "infinity" if row["depth_m"] == math.inf else f"{row['depth_m']:.3g} m",
+            *(f"{row[f'row_error_sigma_{name}_px']:.3f} px" for name in ("rms", "p95", "max")),
+            f"{row['row_error_expected_mean_px']:.3f} px",
+            *("–" if math.isnan(row[name]) else f"{100 * row[name]:.2g} %" for name in share),
+        )
+    screen.print(table)
+    groups = ("points at", "of", *found.row_error_shares)
+    parts = _table(*groups)
+    for k, row in enumerate(numbers):
+        for name, shares in (("row error", found.row_error_shares), ("distance", found.depth_shares)):
+            place = "infinity" if row["depth_m"] == math.inf else f"{row['depth_m']:.3g} m"
+            told = ("–" if math.isnan(share[k]) else f"{100 * share[k]:.0f} %" for share in shares.values())
+            parts.add_row(place, name, *told)
+    screen.print()
+    screen.print(parts)
+    if any((shares < 0).any() for shares in (*found.row_error_shares.values(), *found.depth_shares.values())):
+        screen.print("below 0: what one group adds, another it is correlated with takes away")
 
 
 def show_checks(method: str, findings: Iterable[CheckFinding]) -> int:

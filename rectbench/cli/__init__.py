@@ -10,7 +10,7 @@ from __future__ import annotations
 import logging
 import sys
 
-from rectbench.cli import machine, names, photographs, rectifying, rendering, running
+from rectbench.cli import machine, names, photographs, rectifying, rendering, running, uncertainty
 from rectbench.cli.app import WRONG_USAGE, app
 from rectbench.errors import RectbenchError
 
@@ -24,6 +24,7 @@ for verb in (
     rectifying.rectify,
     photographs.pose,
     photographs.reconstruct,
+    uncertainty.uncertainty,
     machine.check,
     machine.doctor,
     machine.gc,

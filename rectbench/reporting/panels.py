@@ -17,22 +17,26 @@ _HEAD_INCHES = 0.2
 
 
 def panel_grid(
-    count: int, columns: int, aspect: float, margin_inches: float = 0.0
+    count: int,
+    columns: int,
+    aspect: float,
+    margin_inches: float = 0.0,
+    gap_inches: float = _GAP_INCHES,
 ) -> tuple[Figure, list[Axes]]:
     """A figure of `count` bare boxes, each `aspect` times as high as wide, with room for a head.
 
-    `margin_inches` stay free on the right, for a colour bar.
+    `margin_inches` stay free on the right, for a colour bar, `gap_inches` between columns.
     """
     from matplotlib.figure import Figure
 
     rows = math.ceil(count / columns)
-    width = (PAGE_INCHES - margin_inches - (columns - 1) * _GAP_INCHES) / columns
+    width = (PAGE_INCHES - margin_inches - (columns - 1) * gap_inches) / columns
     height = rows * (width * aspect + _HEAD_INCHES) + (rows - 1) * _GAP_INCHES
     figure = Figure(figsize=(PAGE_INCHES, height))
     axes = []
     for i in range(count):
         row, column = divmod(i, columns)
-        left = column * (width + _GAP_INCHES)
+        left = column * (width + gap_inches)
         bottom = height - (row + 1) * (width * aspect + _HEAD_INCHES) - row * _GAP_INCHES
         box = (left / PAGE_INCHES, bottom / height, width / PAGE_INCHES, width * aspect / height)
         ax = figure.add_axes(box)

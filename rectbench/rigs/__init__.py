@@ -1,5 +1,7 @@
 """Two calibrated cameras and their pose; the calibration files people have; motions and pose noise."""
 
+from rectbench.rigs.covariance import RigCovariance
+from rectbench.rigs.covariance_files import load_covariance
 from rectbench.rigs.loading import calibration_formats, load_rig, rig_names
 from rectbench.rigs.motions import MOTIONS, Motion
 from rectbench.rigs.native import write_rig
@@ -12,7 +14,9 @@ __all__ = [
     "Motion",
     "PoseNoise",
     "Rig",
+    "RigCovariance",
     "calibration_formats",
+    "load_covariance",
     "load_rig",
     "perturb",
     "rig_names",

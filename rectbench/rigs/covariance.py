@@ -34,6 +34,7 @@ TRANSLATION = ("pose.tx", "pose.ty", "pose.tz")
 POSE = (*ROTATION, *TRANSLATION)
 PARTS = ("pose", "left", "right")
 
+WIDEST_DEG = 180.0
 ASYMMETRY = 1e-6
 """Largest difference of two correlations that should be equal that still counts as a file's rounding."""
 LEAST_EIGENVALUE = -1e-6
@@ -108,6 +109,8 @@ class RigCovariance:
         for name, sigma in sizes.items():
             if not isinstance(sigma, int | float | np.number) or not 0 <= sigma < np.inf:
                 raise InvalidInput(f"the standard deviation {name} is {sigma!r}; expected a number from 0 on")
+            if name.endswith("_deg") and sigma >= WIDEST_DEG:
+                raise InvalidInput(f"the standard deviation {name} is {sigma:g}; expected degrees below 180")
         total = cls(POSE, _pose_matrix(rig, np.radians(rotation_deg), np.radians(direction_deg), baseline_m))
         for side, camera in (("left", rig.left), ("right", rig.right)):
             for name, sigma in (("focal_px", focal_px), ("centre_px", centre_px)):
@@ -130,10 +133,11 @@ class RigCovariance:
         return RigCovariance(names, self.over(names) + other.over(names), sources)
 
     def over(self, names: Sequence[str]) -> FloatArray:
-        """The covariance [N, N] of these parameters in this order, 0 for one that is known exactly."""
-        places = [names.index(name) for name in self.parameters]
+        """The covariance [N, N] of these parameters in this order, 0 for one that is not named here."""
+        own = [place for place, name in enumerate(self.parameters) if name in names]
+        there = [names.index(self.parameters[place]) for place in own]
         matrix = np.zeros((len(names), len(names)))
-        matrix[np.ix_(places, places)] = self.matrix
+        matrix[np.ix_(there, there)] = self.matrix[np.ix_(own, own)]
         return matrix
 
     @property

@@ -1,0 +1,133 @@
+"""The verb that says what a calibration's uncertainty does to rows and depth."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from rectbench.cli.app import MaxAngle, Method, MethodOptions, MethodSeed, RigFiles, Unit
+from rectbench.errors import InvalidInput
+
+if TYPE_CHECKING:
+    from rectbench.rigs import Rig, RigCovariance
+    from rectbench.warps import Images
+
+
+def uncertainty(
+    rig: RigFiles,
+    left: Annotated[Path | None, typer.Argument(metavar="LEFT", help="The left image.")] = None,
+    right: Annotated[Path | None, typer.Argument(metavar="RIGHT", help="The right image.")] = None,
+    covariance: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="FILE",
+            help="How sure the calibration is: YAML with sigmas or a covariance, Kalibr's results-cam.txt, "
+            "or OpenCV's standard deviations, a file a camera, left first.",
+        ),
+    ] = None,
+    rotation_deg: Annotated[
+        float | None, typer.Option(min=0, help="σ of the right camera's rotation, its size over all axes.")
+    ] = None,
+    direction_deg: Annotated[
+        float | None, typer.Option(min=0, help="σ of the baseline's direction in the left camera's frame.")
+    ] = None,
+    baseline_mm: Annotated[float | None, typer.Option(min=0, help="σ of the baseline's length.")] = None,
+    focal_px: Annotated[
+        float | None, typer.Option(min=0, help="σ of each camera's fx; fy moves along.")
+    ] = None,
+    centre_px: Annotated[float | None, typer.Option(min=0, help="σ of each camera's cx and cy.")] = None,
+    out: Annotated[Path, typer.Option("--out", "-o", help="Folder for what is made.")] = Path("uncertainty"),
+    method: Method = "local-homography",
+    option: MethodOptions = None,
+    depth_m: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="METRES",
+            help="Distances of the points seen, such as 1,10,inf; else 10 and 100 baselines and infinity.",
+        ),
+    ] = None,
+    matching_px: Annotated[
+        float, typer.Option(min=0, help="σ of a match's disparity, in rectified pixels.")
+    ] = 0.25,
+    seed: MethodSeed = 0,
+    max_angle_deg: MaxAngle = None,
+    unit: Unit = None,
+) -> None:
+    """Tell how far the calibration's uncertainty moves rows and depth: a picture, numbers and arrays.
+
+    With two images and nothing said about the calibration, the pose is estimated from them, and its own
+    covariance is used.
+    """
+    from rectbench import api, metrics, terminal
+    from rectbench.bench.configuring import read_options
+    from rectbench.matching.images import read_images
+    from rectbench.reporting.uncertainty_maps import map_pixels, write_uncertainty
+    from rectbench.rigs import load_rig
+
+    if (left is None) != (right is None):
+        raise InvalidInput(f"one image was given, {left}; expected LEFT and RIGHT, or none")
+    depths = _distances(depth_m)
+    images = None if left is None or right is None else read_images(left, right)
+    size = None if images is None else images.left.shape[1::-1]
+    believed = load_rig(rig[0] if len(rig) == 1 else rig, size=size, unit=unit)
+    if max_angle_deg is not None:
+        believed = believed.within(max_angle_deg)
+    sizes = {
+        "rotation_deg": rotation_deg,
+        "direction_deg": direction_deg,
+        "baseline_m": None if baseline_mm is None else baseline_mm / 1000,
+        "focal_px": focal_px,
+        "centre_px": centre_px,
+    }
+    stated = {name: sigma for name, sigma in sizes.items() if sigma is not None}
+    believed, how_sure = _how_sure(believed, images, covariance or [], stated)
+    options = read_options([f"method.{text}" for text in option or []]).get("method", {})
+    rect = api.rectify(believed, method, images=images, seed=seed, **options)
+    found = metrics.uncertainty(
+        rect,
+        believed,
+        how_sure,
+        depth_m=depths,
+        matching_px=matching_px,
+        pixels=map_pixels(believed.left),
+    )
+    files = write_uncertainty(found, how_sure, believed.left, out, {"rig": believed.name, "method": method})
+    terminal.show_uncertainty(found, how_sure)
+    for file in files:
+        print(file)
+
+
+def _how_sure(
+    rig: Rig, images: Images | None, files: list[str], stated: dict[str, Any]
+) -> tuple[Rig, RigCovariance]:
+    """The believed rig, which the images tell where nothing else is said, and its covariance."""
+    from rectbench import api
+    from rectbench.rigs import RigCovariance, load_covariance
+
+    parts = [load_covariance(files, rig)] if files else []
+    if stated:
+        words = ", ".join(f"{name} {sigma:g}" for name, sigma in stated.items())
+        parts.append(RigCovariance.from_sigmas(rig, **stated, source=f"stated: {words}"))
+    if parts:
+        return rig, sum(parts[1:], start=parts[0])
+    if images is None:
+        raise InvalidInput(
+            "nothing says how sure the calibration is; expected --covariance FILE, a size such as "
+            "--rotation-deg 0.05, or two images whose pose is estimated"
+        )
+    estimate = api.estimate_pose(images, rig)
+    return estimate.rig(rig), estimate.rig_covariance(rig)
+
+
+def _distances(texts: list[str] | None) -> list[float] | None:
+    from rectbench.cli.app import split_names
+
+    words = split_names(texts)
+    try:
+        return None if words is None else [float(word) for word in words]
+    except ValueError:
+        raise InvalidInput(
+            f"--depth-m is {','.join(words or [])}; expected distances in metres such as 1,10,inf"
+        ) from None
