@@ -27,7 +27,7 @@ from rectbench.cameras.projection import as_points
 from rectbench.errors import InvalidInput
 from rectbench.metrics.coverage import dense_pixels
 from rectbench.metrics.jacobians import finite
-from rectbench.metrics.rig_slopes import GROUPS, RigSlopes
+from rectbench.metrics.propagation import GROUPS, Propagation
 from rectbench.rigs import Rig
 from rectbench.rigs.covariance import RigCovariance
 from rectbench.warps import Rectification
@@ -36,8 +36,8 @@ MEAN_OF_ABSOLUTE = math.sqrt(2 / math.pi)
 """E|x| of a normal x with σ = 1."""
 DEPTHS_IN_BASELINES = (10.0, 100.0, math.inf)
 """Where points are taken to be unless the caller says."""
-BLOCK = 1 << 16
-"""Pixels propagated at once: derivatives by all parameters are then megabytes, not gigabytes."""
+BLOCK = 1 << 18
+"""Pixels propagated at once."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,9 +143,8 @@ def uncertainty(
         raise InvalidInput(f"matching_px is {matching_px!r}; expected a number of pixels from 0 on")
     grid = dense_pixels(rig.left) if pixels is None else as_points(pixels, 2, "pixels")
     flat = grid.reshape(-1, 2)
-    names = covariance.uncertain
-    slopes = RigSlopes(rect, rig, names)
-    found = [_propagated(slopes, covariance.over(names), flat, depth, matching_px) for depth in depths]
+    propagation = Propagation(rect, rig, covariance)
+    found = [_propagated(propagation, flat, depth, matching_px) for depth in depths]
     shape = (len(depths), *grid.shape[:-1])
 
     def shares(per_depth: Sequence[FloatArray]) -> Mapping[str, FloatArray]:
@@ -174,32 +173,24 @@ class _AtDistance(NamedTuple):
 
 
 def _propagated(
-    slopes: RigSlopes, matrix: FloatArray, pixels: FloatArray, depth_m: float, matching_px: float
+    propagation: Propagation, pixels: FloatArray, depth_m: float, matching_px: float
 ) -> _AtDistance:
     row, inverse, matched = (np.full(len(pixels), math.nan) for _ in range(3))
     by_row, by_inverse, counted = np.zeros(len(GROUPS)), np.zeros(len(GROUPS)), 0
     for first in range(0, len(pixels), BLOCK):
         block = slice(first, first + BLOCK)
-        of_row, of_inverse, px_per_inverse = slopes.at(pixels[block], 1 / depth_m)
-        missing = np.isnan(px_per_inverse)
-        parts = [_by_group(slopes.groups, gradient, matrix) for gradient in (of_row, of_inverse)]
-        for sigma, part in zip((row, inverse), parts, strict=True):
-            sigma[block] = np.where(missing, math.nan, np.sqrt(np.maximum(part.sum(axis=1), 0)))
+        of_row, of_inverse, px_per_inverse = propagation.at(pixels[block], 1 / depth_m)
+        for sigma, parts in ((row, of_row), (inverse, of_inverse)):
+            sigma[block] = np.sqrt(np.maximum(parts.sum(axis=1), 0))  # rounding may be below 0
         with np.errstate(divide="ignore", invalid="ignore"):
             matched[block] = np.hypot(inverse[block], matching_px / np.abs(px_per_inverse))
-            share = parts[1] / np.square(inverse[block])[:, None]
+            share = of_inverse / np.square(inverse[block])[:, None]
         told = np.isfinite(share).all(axis=1)
-        by_row += np.nansum(parts[0], axis=0)
+        by_row += np.nansum(of_row, axis=0)
         by_inverse += share[told].sum(axis=0)
         counted += int(told.sum())
     with np.errstate(invalid="ignore"):
         return _AtDistance(row, inverse, matched, by_row / by_row.sum(), by_inverse / np.float64(counted))
-
-
-def _by_group(groups: FloatArray, gradient: FloatArray, matrix: FloatArray) -> FloatArray:
-    """What each group adds to the variance g Σ gᵀ [N, 4]; a correlation's part goes to both in halves."""
-    added: FloatArray = (gradient * (gradient @ matrix)) @ groups
-    return added
 
 
 def _checked_depths(depth_m: float | Sequence[float] | None, rig: Rig) -> tuple[float, ...]:

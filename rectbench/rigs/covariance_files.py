@@ -210,5 +210,5 @@ def _names(source: Source, key: str, camera: Camera, projection: int, distortion
 def _refuse_other(source: Source, where: str, values: FloatArray, own: FloatArray, whose: str) -> None:
     """Raise where a results file is of another calibration than the rig."""
     if values.shape != own.shape or not np.allclose(values, own, AGREEMENT, LEAST_AGREEMENT):
-        given, expected = (shown(np.round(numbers, 6).tolist()) for numbers in (values, own))
+        given, expected = (shown([float(f"{n:.6g}") for n in numbers]) for numbers in (values, own))
         raise InvalidInput(f"{source.path}: {where} are {given}; expected {whose}, {expected}")

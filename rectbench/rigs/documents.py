@@ -88,7 +88,7 @@ class Section:
 
     def at(self, key: str) -> str:
         """File and full key, as errors name them."""
-        return f"{self.file}: {self.key}{key}"
+        return f"{self.file}: {one_line(f'{self.key}{key}')}"
 
     def only(self, known: Iterable[str]) -> None:
         """Raise for a key that is none of those known, which would else be passed over in silence."""

@@ -175,6 +175,7 @@ KALIBR = kalibr_results(PINHOLES)
         (["sigmas: {rotation_deg: -1}"], "sigmas: the standard deviation rotation_deg is -1"),
         (["sigmas: {yaw_deg: 1}"], "sigmas: unknown parameter of a rig 'yaw_deg'"),
         (["sigmas: {left.xi: 1}"], r"sigmas: unknown parameter of the left lens \(pinhole\) 'xi'"),
+        (['sigmas: {"\\uFEFFleft.k1": wide}'], "sigmas. left.k1 is 'wide'; expected a standard deviation"),
         (["sigmas: 3"], "sigmas is '3'; expected standard deviations by name"),
         (["sigma: {rotation_deg: 1}"], "unknown key 'sigma'; did you mean sigmas"),
         (["sigmas: {}\ncovariance: [[1]]"], "sigmas stands beside covariance"),

@@ -1,4 +1,4 @@
-"""How a point's right rectified pixel hangs on the rig's parameters, at given left pixel and distance."""
+"""The covariance of a rig's parameters, propagated to where a point appears in the right rectified image."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from rectbench.cameras.arrays import FloatArray, evaluate_points
 from rectbench.cameras.projection import projected_partials
 from rectbench.cameras.sensitivity import parameter_constants, parameter_partials
 from rectbench.metrics.coverage import in_frame
-from rectbench.rigs import Rig
+from rectbench.rigs import Rig, RigCovariance
 from rectbench.rigs.covariance import POSE
 from rectbench.warps import Rectification
 from rectbench.warps.warp import Vector, ray_derivatives, rotated, rotated_back
@@ -20,32 +20,35 @@ from rectbench.warps.warp import Vector, ray_derivatives, rotated, rotated_back
 GROUPS = ("rotation", "translation", "left intrinsics", "right intrinsics")
 
 
-class RigSlopes:
-    """Exact derivatives, by the formulas that project and rectify, by the parameters `names` of the rig.
+class Propagation:
+    """Variances of row error and of inverse distance, by the formulas that project and rectify.
 
-    `groups` [P, 4] says which of `GROUPS` each parameter is of.
+    What is summed to them, g Σ gᵀ with a gradient g over the parameters, is summed in the kernel: the
+    gradients of all pixels would fill the memory.
     """
 
-    def __init__(self, rect: Rectification, rig: Rig, names: Sequence[str]) -> None:
+    def __init__(self, rect: Rectification, rig: Rig, covariance: RigCovariance) -> None:
         self.rect, self.rig = rect, rig
-        self.pose = tuple(name for name in names if name in POSE)
-        self.left, self.right = (_of_part(names, side) for side in ("left", "right"))
-        grouped = [*self.pose, *(f"left.{n}" for n in self.left), *(f"right.{n}" for n in self.right)]
-        self.places = [grouped.index(name) for name in names]
-        self.groups = np.array([[float(_group(name) == group) for group in GROUPS] for name in names])
-        self.groups = self.groups.reshape(len(names), len(GROUPS))
+        unsure = covariance.uncertain
+        self.pose = tuple(name for name in unsure if name in POSE)
+        self.left, self.right = (_of_part(unsure, side) for side in ("left", "right"))
+        names = (*self.pose, *(f"left.{n}" for n in self.left), *(f"right.{n}" for n in self.right))
+        self.groups = [_group(name) for name in names]
+        self.matrix = covariance.over(names)
         self.constants = {
             "left": parameter_constants(rig.left, self.left),
             "right": parameter_constants(rig.right, self.right),
-            "R": tuple(tuple(map(float, row)) for row in rig.R_right_left),
+            "R": _rows(rig.R_right_left),
             "t": tuple(map(float, rig.t_right_left)),
             "warp": rect.right.constants,
+            "covariance": _rows(self.matrix),
         }
 
     def at(self, pixels: FloatArray, inverse_depth: float) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Of the points that the left source pixels [N, 2] show at this 1/d (1/m):
 
-        ∂v̂'/∂θ [N, P], ∂(1/d)/∂θ [N, P], and ∂û'/∂(1/d) [N] in px m; NaN where a point is not in both
+        the variance of the row error [N, 4], px², and of 1/d [N, 4], 1/m², as the sum of what each of
+        `GROUPS` adds, and ∂û/∂(1/d) in the right image [N], px m. NaN where a point is not in both
         images, source and rectified.
         """
         columns = np.column_stack([pixels, np.full(len(pixels), inverse_depth)])
@@ -54,13 +57,18 @@ class RigSlopes:
         px_rect = self.rect.left.forward(pixels), self.rect.right.forward(px_right)
         shown = in_frame(px_rect[0], self.rect.size) & in_frame(px_rect[1], self.rect.size)
         shown &= self.rig.left.contains(pixels) & self.rig.right.contains(px_right)
-        values = np.where(shown[:, None], values, math.nan)
-        by_column, by_row = (half[:, self.places] for half in np.split(values[:, 3:], 2, axis=1))
-        with np.errstate(divide="ignore", invalid="ignore"):
-            return by_row, by_column / values[:, 2:3], values[:, 2]
+        values[~shown] = math.nan
+        return values[:, 3:7], values[:, 7:], values[:, 2]
 
     def _formula(self, c: Any, u: Any, v: Any, inverse_depth: Any, xp: Any) -> tuple[Any, ...]:
-        """Right source pixel, ∂û'/∂(1/d), the slopes of û' by all parameters, those of v̂', the mask."""
+        """Right source pixel, ∂û/∂(1/d), the groups' parts in row error and in 1/d, and the mask."""
+        px_right, per_inverse, by_column, by_row, ok = self._slopes(c, u, v, inverse_depth, xp)
+        of_row = self._variance_by_group(c, by_row, u)
+        of_inverse = self._variance_by_group(c, [slope / per_inverse for slope in by_column], u)
+        return *px_right, per_inverse, *of_row, *of_inverse, ok
+
+    def _slopes(self, c: Any, u: Any, v: Any, inverse_depth: Any, xp: Any) -> tuple[Any, ...]:
+        """Right source pixel; slopes of its û by 1/d, of û and of v̂ by all parameters; the mask."""
         left, right = self.rig.left, self.rig.right
         x, y, z, seen = left.unproject_formula(c.left.value, u, v, xp)
         turned = rotated(c.R, x, y, z)
@@ -86,7 +94,19 @@ class RigSlopes:
             )
 
         (per_inverse, by_column), (_, by_row) = slopes(J[:2]), slopes(J[2:])
-        return u_right, v_right, per_inverse, *by_column, *by_row, seen & ok & warped
+        return (u_right, v_right), per_inverse, by_column, by_row, seen & ok & warped
+
+    def _variance_by_group(self, c: Any, gradient: Sequence[Any], like: Any) -> list[Any]:
+        """The parts of g Σ gᵀ; that of a correlation between two groups goes to both in halves."""
+        parts = dict.fromkeys(GROUPS, 0.0 * like)
+        for group, slope, row, known in zip(self.groups, gradient, c.covariance, self.matrix, strict=True):
+            terms = zip(row, gradient, known, strict=True)
+            parts[group] = parts[group] + slope * sum(s * g for s, g, nonzero in terms if nonzero)
+        return list(parts.values())
+
+
+def _rows(matrix: FloatArray) -> tuple[tuple[float, ...], ...]:
+    return tuple(tuple(map(float, row)) for row in matrix)
 
 
 def _group(name: str) -> str:
