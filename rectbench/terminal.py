@@ -261,44 +261,35 @@ def _show_choice(screen: Console, choice: Choice) -> None:
 
 
 def show_uncertainty(found: Uncertainty, covariance: RigCovariance) -> None:
-    """What an uncertain calibration does to rows and distances, a line for each distance; and whence."""
+    """What an unsure calibration does to rows and distances, a line for each distance; and by what."""
     screen = console()
-    screen.print(Text(f"calibration: {covariance.source}"), soft_wrap=True)
-    table = _table(
-        "points at",
-        "row error σ",
-        "95 %",
-        "largest",
-        "mean |row error|",
-        "distance σ",
-        "95 %",
-        "with matching",
+    rows = _table(
+        "points at", "row error σ", "95 %", "most", "mean |error|", "distance σ", "95 %", "matched σ"
     )
-    numbers = found.numbers()
-    for row in numbers:
-        share = (
-            "depth_sigma_median_share",
-            "depth_sigma_p95_share",
-            "depth_sigma_median_matched_share",
+    shares = _table("share of the variance", "in", *found.row_error_shares)
+    for k, numbers in enumerate(found.numbers()):
+        depth_m = numbers["depth_m"]
+        place = "infinity" if math.isinf(depth_m) else f"{depth_m:.3g} m"
+        rows.add_row(
+            place,
+            *(f"{numbers[f'row_error_sigma_{name}_px']:.3f} px" for name in ("rms", "p95", "max")),
+            f"{numbers['row_error_expected_mean_px']:.3f} px",
+            *(_percent(numbers[f"depth_sigma_{name}_share"]) for name in ("median", "p95", "median_matched")),
         )
-        table.add_row(
-            "infinity" if row["depth_m"] == math.inf else f"{row['depth_m']:.3g} m",
-            *(f"{row[f'row_error_sigma_{name}_px']:.3f} px" for name in ("rms", "p95", "max")),
-            f"{row['row_error_expected_mean_px']:.3f} px",
-            *("–" if math.isnan(row[name]) else f"{100 * row[name]:.2g} %" for name in share),
-        )
-    screen.print(table)
-    groups = ("points at", "of", *found.row_error_shares)
-    parts = _table(*groups)
-    for k, row in enumerate(numbers):
-        for name, shares in (("row error", found.row_error_shares), ("distance", found.depth_shares)):
-            place = "infinity" if row["depth_m"] == math.inf else f"{row['depth_m']:.3g} m"
-            told = ("–" if math.isnan(share[k]) else f"{100 * share[k]:.0f} %" for share in shares.values())
-            parts.add_row(place, name, *told)
+        for name, groups in (("row error", found.row_error_shares), ("distance", found.depth_shares)):
+            shares.add_row(place, name, *(_percent(float(share[k])) for share in groups.values()))
+    screen.print(Text(f"calibration: {covariance.source}"), soft_wrap=True)
+    screen.print(rows)
     screen.print()
-    screen.print(parts)
-    if any((shares < 0).any() for shares in (*found.row_error_shares.values(), *found.depth_shares.values())):
-        screen.print("below 0: what one group adds, another it is correlated with takes away")
+    screen.print(shares)
+    if any((share < 0).any() for share in (*found.row_error_shares.values(), *found.depth_shares.values())):
+        screen.print("below 0: what one group adds, another that it is correlated with takes away")
+
+
+def _percent(share: float) -> str:
+    return (
+        "–" if math.isnan(share) else f"{100 * share:.2g} %" if abs(share) < 0.1 else f"{100 * share:.0f} %"
+    )
 
 
 def show_checks(method: str, findings: Iterable[CheckFinding]) -> int:

@@ -72,16 +72,18 @@ def test_any_choice_of_distances_makes_a_picture(shell: Shell, depths: str) -> N
     assert picture.std() > 20
 
 
-def test_images_alone_tell_the_pose_and_its_covariance(shell: Shell) -> None:
+def test_images_tell_the_pose_and_its_covariance_to_which_that_of_lenses_adds(shell: Shell) -> None:
     images = pair_of(ROOM)
     for name, image in zip(("left.png", "right.png"), images, strict=True):
         cv2.imwrite(name, image)
-    code, out, err = shell("uncertainty", "left.png", "right.png", "--rig", "rig.yaml", "-o", "out")
+    words = ("left.png", "right.png", "--rig", "rig.yaml", "--focal-px", 0.4, "-o", "out")
+    code, out, err = shell("uncertainty", *words)
     assert (code, err) == (0, "")
-    assert "calibration: estimated from the images" in out
+    assert "calibration: pose estimated from the images, lenses and baseline's length taken as exact" in out
     estimate = rb.estimate_pose(images, ROOM)
     told = numbers_of("out")
-    assert told["covariance"] == "estimated from the images"
+    assert "estimated from the images" in told["covariance"]
+    assert told["sigmas"]["left.fx"] == 0.4
     sigma_deg = math.degrees(math.hypot(*(told["sigmas"][f"pose.r{axis}"] for axis in "xyz")))
     assert sigma_deg == pytest.approx(estimate.rotation_sigma_deg, rel=1e-6)
 

@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from rectbench.cli.app import MaxAngle, Method, MethodOptions, MethodSeed, RigFiles, Unit
+from rectbench.cli.app import MaxAngle, Method, MethodOptions, MethodSeed, RigFiles, Unit, split_names
 from rectbench.errors import InvalidInput
+
+POSE_SIZES = {"rotation_deg", "direction_deg"}
 
 if TYPE_CHECKING:
     from rectbench.rigs import Rig, RigCovariance
@@ -57,11 +59,11 @@ def uncertainty(
 ) -> None:
     """Tell how far the calibration's uncertainty moves rows and depth: a picture, numbers and arrays.
 
-    With two images and nothing said about the calibration, the pose is estimated from them, and its own
-    covariance is used.
+    With two images and nothing said about the pose, it is estimated from them with its own covariance, to
+    which what is said about lenses and baseline adds.
     """
     from rectbench import api, metrics, terminal
-    from rectbench.bench.configuring import read_options
+    from rectbench.bench.configuring import read_method_options
     from rectbench.matching.images import read_images
     from rectbench.reporting.uncertainty_maps import map_pixels, write_uncertainty
     from rectbench.rigs import load_rig
@@ -70,8 +72,7 @@ def uncertainty(
         raise InvalidInput(f"one image was given, {left}; expected LEFT and RIGHT, or none")
     depths = _distances(depth_m)
     images = None if left is None or right is None else read_images(left, right)
-    size = None if images is None else images.left.shape[1::-1]
-    believed = load_rig(rig[0] if len(rig) == 1 else rig, size=size, unit=unit)
+    believed = load_rig(rig, size=None if images is None else images.left.shape[1::-1], unit=unit)
     if max_angle_deg is not None:
         believed = believed.within(max_angle_deg)
     sizes = {
@@ -83,15 +84,10 @@ def uncertainty(
     }
     stated = {name: sigma for name, sigma in sizes.items() if sigma is not None}
     believed, how_sure = _how_sure(believed, images, covariance or [], stated)
-    options = read_options([f"method.{text}" for text in option or []]).get("method", {})
-    rect = api.rectify(believed, method, images=images, seed=seed, **options)
+    rect = api.rectify(believed, method, images=images, seed=seed, **read_method_options(option))
+    grid = map_pixels(believed.left)
     found = metrics.uncertainty(
-        rect,
-        believed,
-        how_sure,
-        depth_m=depths,
-        matching_px=matching_px,
-        pixels=map_pixels(believed.left),
+        rect, believed, how_sure, depth_m=depths, matching_px=matching_px, pixels=grid
     )
     files = write_uncertainty(found, how_sure, believed.left, out, {"rig": believed.name, "method": method})
     terminal.show_uncertainty(found, how_sure)
@@ -102,28 +98,29 @@ def uncertainty(
 def _how_sure(
     rig: Rig, images: Images | None, files: list[str], stated: dict[str, Any]
 ) -> tuple[Rig, RigCovariance]:
-    """The believed rig, which the images tell where nothing else is said, and its covariance."""
+    """The believed rig, whose pose images tell where nothing is said of it, and its covariance."""
     from rectbench import api
     from rectbench.rigs import RigCovariance, load_covariance
 
-    parts = [load_covariance(files, rig)] if files else []
+    parts = []
+    if images is not None and not files and not POSE_SIZES & stated.keys():
+        estimate = api.estimate_pose(images, rig)
+        rig = estimate.rig(rig)
+        parts.append(estimate.rig_covariance(rig))
+    if files:
+        parts.append(load_covariance(files, rig))
     if stated:
         words = ", ".join(f"{name} {sigma:g}" for name, sigma in stated.items())
-        parts.append(RigCovariance.from_sigmas(rig, **stated, source=f"stated: {words}"))
-    if parts:
-        return rig, sum(parts[1:], start=parts[0])
-    if images is None:
+        parts.append(RigCovariance.from_sigmas(rig, **stated, source=f"stated {words}"))
+    if not parts:
         raise InvalidInput(
             "nothing says how sure the calibration is; expected --covariance FILE, a size such as "
             "--rotation-deg 0.05, or two images whose pose is estimated"
         )
-    estimate = api.estimate_pose(images, rig)
-    return estimate.rig(rig), estimate.rig_covariance(rig)
+    return rig, sum(parts[1:], start=parts[0])
 
 
 def _distances(texts: list[str] | None) -> list[float] | None:
-    from rectbench.cli.app import split_names
-
     words = split_names(texts)
     try:
         return None if words is None else [float(word) for word in words]

@@ -123,8 +123,12 @@ class PoseEstimate:
         return ""
 
     def rig_covariance(self, rig: Rig) -> RigCovariance:
-        """How sure the pose of `self.rig(rig)` is; its lenses and its baseline's length count as exact."""
-        return RigCovariance.of_direction(self.covariance, rig.baseline_m, "estimated from the images")
+        """How sure the pose of `self.rig(rig)` is; its lenses and its baseline's length count as exact.
+
+        Real lenses are not: add what their calibration says, see `RigCovariance.from_sigmas`.
+        """
+        source = "pose estimated from the images, lenses and baseline's length taken as exact"
+        return RigCovariance.of_direction(self.covariance, rig.baseline_m, source)
 
     def rig(self, rig: Rig) -> Rig:
         """The rig with its own cameras and baseline length, and this pose."""

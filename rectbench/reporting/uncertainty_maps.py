@@ -21,8 +21,8 @@ from rectbench.metrics.uncertainty import Uncertainty
 from rectbench.reporting.numbers import three_digits
 from rectbench.reporting.panels import fit_into_box, panel_grid, write_head, write_message
 from rectbench.reporting.style import LOST, PAGE_INCHES, STYLE, encode
-from rectbench.reporting.writing import write_atomically
 from rectbench.rigs.covariance import RigCovariance
+from rectbench.writing import write_atomically
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
