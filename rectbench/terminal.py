@@ -277,19 +277,23 @@ def show_uncertainty(found: Uncertainty, covariance: RigCovariance) -> None:
             *(_percent(numbers[f"depth_sigma_{name}_share"]) for name in ("median", "p95", "median_matched")),
         )
         for name, groups in (("row error", found.row_error_shares), ("distance", found.depth_shares)):
-            shares.add_row(place, name, *(_percent(float(share[k])) for share in groups.values()))
+            shares.add_row(place, name, *(_whole_percent(float(share[k])) for share in groups.values()))
     screen.print(Text(f"calibration: {covariance.source}"), soft_wrap=True)
     screen.print(rows)
     screen.print()
     screen.print(shares)
-    if any((share < 0).any() for share in (*found.row_error_shares.values(), *found.depth_shares.values())):
+    if any(
+        (share < -0.005).any() for share in (*found.row_error_shares.values(), *found.depth_shares.values())
+    ):
         screen.print("below 0: what one group adds, another that it is correlated with takes away")
 
 
 def _percent(share: float) -> str:
-    return (
-        "–" if math.isnan(share) else f"{100 * share:.2g} %" if abs(share) < 0.1 else f"{100 * share:.0f} %"
-    )
+    return "–" if math.isnan(share) else f"{100 * share:.2g} %" if share < 0.1 else f"{100 * share:.0f} %"
+
+
+def _whole_percent(share: float) -> str:
+    return "–" if math.isnan(share) else f"{round(100 * share)} %"
 
 
 def show_checks(method: str, findings: Iterable[CheckFinding]) -> int:

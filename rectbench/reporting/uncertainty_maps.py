@@ -207,7 +207,7 @@ def _draw_bar(figure: Figure, ax: Axes, maps: _Maps) -> None:
 
     box = ax.get_position()
     left = box.x1 + 0.07 / PAGE_INCHES
-    bar_ax = figure.add_axes((left, box.y0 + 0.12 * box.height, 0.09 / PAGE_INCHES, 0.68 * box.height))
+    bar_ax = figure.add_axes((left, box.y0 + 0.15 * box.height, 0.09 / PAGE_INCHES, 0.62 * box.height))
     top = float(maps.norm.vmax or 0.0)
     clipped = any((values > top).any() for values in maps.values)
     extend = "max" if clipped else "neither"
@@ -216,10 +216,10 @@ def _draw_bar(figure: Figure, ax: Axes, maps: _Maps) -> None:
     bar_ax.yaxis.set_major_locator(locator)
     bar_ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     bar_ax.yaxis.set_minor_formatter(NullFormatter())
-    bar_ax.set_title(f"σ [{maps.unit}]", loc="left", pad=16)
+    bar_ax.set_title(f"σ [{maps.unit}]", loc="left", pad=19)
     bar.outline.set_linewidth(0.4)
     if clipped:
-        bar_ax.text(1.5, 1.05, f"> {top:g}", transform=bar_ax.transAxes, va="center", size=6.5)
+        bar_ax.text(1.5, 1.08, f"> {top:g}", transform=bar_ax.transAxes, va="center", size=6.5)
 
 
 def _add_legend(figure: Figure) -> None:

@@ -23,7 +23,7 @@ def test_row_errors_of_a_calibration_are_explained_by_pose_and_lens_together(
     images = [cv2.imread(str(real_data / "pairs/t265" / name), cv2.IMREAD_UNCHANGED) for name in names]
     estimate = rb.estimate_pose(images, calibrated)
     believed, of_pose = estimate.rig(calibrated), estimate.rig_covariance(calibrated)
-    of_lenses = rb.RigCovariance.from_sigmas(calibrated, centre_px=0.3, focal_px=0.5)
+    of_lenses = rb.RigCovariance.from_sigmas(calibrated, centre_px=0.15, focal_px=0.2)
     rect, pixels, depth_m = rb.rectify(believed), estimate.inliers.left, 1.6
 
     # Where the calibration says that the matched points are, in the rectification of the images' pose.
@@ -38,5 +38,5 @@ def test_row_errors_of_a_calibration_are_explained_by_pose_and_lens_together(
 
     # The pose's own covariance presumes the lenses exact, and is far too sure.
     assert np.sqrt(np.mean(deviations(of_pose) ** 2)) > 3
-    assert np.sqrt(np.mean(deviations(of_pose + of_lenses) ** 2)) < 1.5
+    assert 0.5 < np.sqrt(np.mean(deviations(of_pose + of_lenses) ** 2)) < 1.3
     assert np.mean(deviations(of_pose + of_lenses) < 2) > 0.9
