@@ -88,6 +88,15 @@ def test_images_tell_the_pose_and_its_covariance_to_which_that_of_lenses_adds(sh
     assert sigma_deg == pytest.approx(estimate.rotation_sigma_deg, rel=1e-6)
 
 
+def test_images_of_another_rig_are_refused(shell: Shell) -> None:
+    for name, image in zip(("right.png", "left.png"), pair_of(ROOM), strict=True):
+        cv2.imwrite(name, image)
+    code, _, err = shell("uncertainty", "left.png", "right.png", "--rig", "rig.yaml", "-o", "out")
+    assert code == 2
+    assert "the images look swapped" in err
+    assert not Path("out").exists()
+
+
 def test_a_file_and_stated_sizes_add(shell: Shell) -> None:
     Path("covariance.yaml").write_text("sigmas: {pose.rx: 3.0e-3}")
     words = ("--covariance", "covariance.yaml", "--focal-px", 1.5, "-o", "out")

@@ -105,6 +105,8 @@ def _how_sure(
     parts = []
     if images is not None and not files and not POSE_SIZES & stated.keys():
         estimate = api.estimate_pose(images, rig)
+        if estimate.note:
+            raise InvalidInput(f"{estimate.note}; expected images of the calibrated rig")
         rig = estimate.rig(rig)
         parts.append(estimate.rig_covariance(rig))
     if files:

@@ -194,12 +194,9 @@ def _stated(source: Source, text: str, where: str, key: str, *counts: int) -> tu
 
 def _names(source: Source, key: str, camera: Camera, projection: int, distortion: int) -> tuple[str, ...]:
     """The parameters in Kalibr's lists for the lens."""
+    wanted = camera.model, projection, distortion
     for layout in LAYOUTS.values():
-        if (layout.model, len(layout.intrinsics), len(layout.distortion)) == (
-            camera.model,
-            projection,
-            distortion,
-        ):
+        if (layout.model, len(layout.intrinsics), len(layout.distortion)) == wanted:
             return (*layout.intrinsics, *layout.distortion)
     raise InvalidInput(
         f"{source.path}: {key} has {projection} numbers of projection and {distortion} of distortion; "
