@@ -54,6 +54,7 @@ from .warps import Profile as Profile
 from .warps import Radial as Radial
 from .warps import Rectification as Rectification
 from .warps import Rectifier as Rectifier
+from .warps import Resampler as Resampler
 from .warps import Target as Target
 from .warps import ViewAngles as ViewAngles
 from .warps import Warp as Warp

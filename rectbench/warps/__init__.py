@@ -9,6 +9,7 @@ from rectbench.warps.pinhole_view import HomographyRectifier, PinholeView
 from rectbench.warps.profiles import Cubic, Profile, Radial
 from rectbench.warps.rectification import Rectification
 from rectbench.warps.rectifier import Images, Matches, Options, Problem, Rectifier, option, pose_problem
+from rectbench.warps.resampling import Resampler
 from rectbench.warps.sampling import evaluation_pixels, outline_pixels
 from rectbench.warps.targets import Epipolar, Framed, Perspective, Target
 from rectbench.warps.warp import Warp
@@ -30,6 +31,7 @@ __all__ = [
     "Radial",
     "Rectification",
     "Rectifier",
+    "Resampler",
     "Target",
     "ViewAngles",
     "Warp",

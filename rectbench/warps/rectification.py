@@ -16,7 +16,7 @@ from rectbench.errors import InvalidInput
 from rectbench.rigs import Rig
 from rectbench.warps.frame import rectifying_rotations, signed_baseline_m
 from rectbench.warps.resampling import Filter, Resampler
-from rectbench.warps.tables import FloatMap, lookup_table
+from rectbench.warps.tables import FloatMap, lookup_table, reads_source
 from rectbench.warps.targets import Target
 from rectbench.warps.warp import Warp
 
@@ -117,10 +117,7 @@ class Rectification:
 
     def valid(self, side: Side) -> NDArray[np.bool_]:
         """Mask [height, width] of rectified pixels that read nothing but source pixels."""
-        map_x, map_y = self.maps(side)
-        w, h = self.warp(side).source.size
-        mask: NDArray[np.bool_] = (map_x >= 0) & (map_x <= w - 1) & (map_y >= 0) & (map_y <= h - 1)
-        return mask
+        return reads_source(*self.maps(side), self.warp(side).source.size)
 
     def remap(
         self,

@@ -72,13 +72,13 @@ class Resampler:
         halved = _halved_images(image, self.footprints.levels)
 
         def average(patch: Patch) -> None:
-            means = self._means(patch, halved[patch.level])
-            mask = patch.mask.reshape(*patch.mask.shape, *(1,) * (means.ndim - 2))
-            np.copyto(resampled[patch.place], _rounded(means, resampled.dtype), where=mask)
+            means = _rounded(self._means(patch, halved[patch.level]), resampled.dtype)
+            cv2.copyTo(
+                means, patch.mask.view(np.uint8), resampled[patch.place]
+            )  # np.copyto: 50 times as long
 
-        with ThreadPoolExecutor(cv2.getNumThreads()) as threads:
-            for _ in threads.map(average, self.footprints.patches):
-                pass  # an exception in a thread is raised here
+        with ThreadPoolExecutor(max(1, cv2.getNumThreads())) as threads:
+            list(threads.map(average, self.footprints.patches))  # raises what a thread raised
         return resampled
 
     def _checked(self, image: NDArray[np.generic]) -> NDArray[np.generic]:
@@ -96,10 +96,10 @@ class Resampler:
 
     def _means(self, patch: Patch, image: NDArray[Any]) -> NDArray[Any]:
         """[h, w, ...], the mean of each pixel's samples; beyond the source's edge its last pixel goes on."""
-        total: Any = 0
-        for x, y in patch.samples():
-            total += cv2.remap(image, x, y, self.interpolation, borderMode=cv2.BORDER_REPLICATE)
-        means: NDArray[Any] = total / np.float32(patch.counts[0] * patch.counts[1])
+        read = cv2.remap(image, *patch.maps(), self.interpolation, borderMode=cv2.BORDER_REPLICATE)
+        means: NDArray[Any] = read.reshape(len(patch.samples), *patch.mask.shape, *read.shape[2:]).mean(
+            axis=0
+        )
         return means
 
 
@@ -123,4 +123,5 @@ def _rounded(values: NDArray[Any], dtype: np.dtype[Any]) -> NDArray[Any]:
     if dtype.kind == "f":
         return values.astype(dtype, copy=False)
     limits = np.iinfo(dtype)
-    return np.clip(np.rint(values), limits.min, limits.max).astype(dtype)
+    rounded: NDArray[Any] = np.clip(np.rint(values), limits.min, limits.max).astype(dtype)
+    return rounded

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rectbench import llvm
-from rectbench.cameras.arrays import FloatArray, drjit_namespace, namespaced, opaque
+from rectbench.cameras.arrays import BoolArray, FloatArray, drjit_namespace, namespaced, opaque
 from rectbench.warps.warp import Warp, rotated_back
 
 OUTSIDE = -16.0
@@ -27,6 +27,13 @@ def lookup_table(warp: Warp, size: tuple[int, int]) -> tuple[FloatMap, FloatMap]
     columns, rows = warp.target.axis_tables(np.arange(size[0], dtype=float), np.arange(size[1], dtype=float))
     fill = _fill_compiled if llvm.available() else _fill_with_numpy
     return fill(warp, columns, rows)
+
+
+def reads_source(map_x: FloatMap, map_y: FloatMap, size: tuple[int, int]) -> BoolArray:
+    """Mask of table entries that read nothing but pixels of a source image of `size`."""
+    w, h = size
+    mask: BoolArray = (map_x >= 0) & (map_x <= w - 1) & (map_y >= 0) & (map_y <= h - 1)
+    return mask
 
 
 def _source_pixel(warp: Warp, c: Any, column: Any, row: Any, xp: Any) -> tuple[Any, Any]:
