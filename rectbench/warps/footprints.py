@@ -112,9 +112,10 @@ class Footprints:
 def _derivatives(warp: Warp, rows: slice, width: int) -> FloatMap:
     """A [2, 2, rows, width]; 0, which covers nothing, where there is none."""
     v, u = np.mgrid[rows, 0:width]
-    A = np.nan_to_num(warp.inverse_jacobian(np.stack([u, v], axis=-1)), nan=0.0)
-    A = np.clip(A, -LONGEST_PX, LONGEST_PX)
-    return np.moveaxis(A, (-2, -1), (0, 1)).astype(np.float32)
+    entries = np.clip(warp.inverse_jacobian(np.stack([u, v], axis=-1)), -LONGEST_PX, LONGEST_PX)
+    A = np.moveaxis(entries, (-2, -1), (0, 1)).astype(np.float32, order="C")
+    A[np.isnan(A)] = 0
+    return A
 
 
 def longest_px(A: NDArray[Any]) -> NDArray[Any]:

@@ -1,4 +1,4 @@
-"""What rectified pixels cover in the source: derivatives, what is left to average, arrangements of samples."""
+"""What rectified pixels cover in the source: derivatives, what is left to average, and how it is sampled."""
 
 import numpy as np
 import pytest
