@@ -1,6 +1,7 @@
 """Resampling by points and by areas: what must not change, what must be averaged, and how well."""
 
 import warnings
+from collections.abc import Callable
 
 import cv2
 import numpy as np
@@ -9,7 +10,7 @@ import pytest
 import rectbench as rb
 from rectbench import llvm
 from rectbench.warps import footprints
-from rectbench.warps.resampling import REMAPPED_TYPES
+from rectbench.warps.resampling import REMAPPED_TYPES, Filter
 from tests.rigs_for_tests import aligned_rig, rig
 
 METHODS = ("conventional", "abraham", "local-homography", "hartley", "fusiello")
@@ -106,7 +107,9 @@ def stripes() -> np.ndarray:
 @pytest.mark.parametrize("picture", [rings, stripes])
 @pytest.mark.parametrize(("factor", "gain"), [(0.5, 1.5), (0.25, 6), (0.1, 30)])
 @pytest.mark.parametrize("method", METHODS)
-def test_the_error_against_256_samples_a_pixel_falls(method, factor, gain, picture) -> None:
+def test_the_error_against_256_samples_a_pixel_falls(
+    method: str, factor: float, gain: float, picture: Callable[[], np.ndarray]
+) -> None:
     rect = rb.rectify(rig(), method=method).scaled(factor)
     image = picture()
     fine = rect.scaled(16)
@@ -117,6 +120,34 @@ def test_the_error_against_256_samples_a_pixel_falls(method, factor, gain, pictu
         for name in ("point", "area")
     )
     assert points / areas > gain
+
+
+def seen_scene(u: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """Oblique waves of periods from 3 to 40 source pixels, at any place."""
+    angles, periods = np.linspace(0, 3, 12), np.geomspace(3, 40, 12)
+    waves = [
+        np.cos(2 * np.pi / period * (u * np.cos(a) + v * np.sin(a)) + 7 * a)
+        for a, period in zip(angles, periods, strict=True)
+    ]
+    return np.asarray(127.5 + 30 * sum(waves), np.float32)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_areas_come_closer_to_the_scene_and_closest_with_cubic_samples(method: str) -> None:
+    rect = rb.rectify(rig(), method=method).scaled(0.25)
+    map_x, map_y = rect.scaled(16).maps("left")
+    scene = cv2.resize(seen_scene(map_x, map_y), rect.size, interpolation=cv2.INTER_AREA)
+    fine = [(np.arange(8 * side) + 0.5) / 8 - 0.5 for side in SIZE]
+    image = cv2.resize(seen_scene(*np.meshgrid(*fine)), SIZE, interpolation=cv2.INTER_AREA)
+    inner = cv2.erode(rect.valid("left").astype(np.uint8), np.ones((9, 9)), borderValue=0) > 0
+
+    def error(filter: Filter, interpolation: int) -> float:
+        resampled = rb.Resampler.of(rect, "left", filter, interpolation)(image)
+        return float(np.sqrt(np.square(resampled - scene)[inner].mean()))
+
+    points, areas = error("point", cv2.INTER_LINEAR), error("area", cv2.INTER_LINEAR)
+    assert areas < points / 6
+    assert error("area", cv2.INTER_CUBIC) < areas / 2
 
 
 def test_the_same_without_a_compiler_and_in_other_tiles(monkeypatch: pytest.MonkeyPatch) -> None:
