@@ -10,7 +10,16 @@ from __future__ import annotations
 import logging
 import sys
 
-from rectbench.cli import machine, names, photographs, rectifying, rendering, running, uncertainty
+from rectbench.cli import (
+    calibrations,
+    machine,
+    names,
+    photographs,
+    rectifying,
+    rendering,
+    running,
+    uncertainty,
+)
 from rectbench.cli.app import WRONG_USAGE, app
 from rectbench.errors import RectbenchError
 
@@ -25,6 +34,7 @@ for verb in (
     photographs.pose,
     photographs.reconstruct,
     uncertainty.uncertainty,
+    calibrations.convert,
     machine.check,
     machine.doctor,
     machine.gc,
