@@ -12,6 +12,7 @@ import sys
 
 from rectbench.cli import (
     calibrations,
+    exporting,
     machine,
     names,
     photographs,
@@ -30,6 +31,7 @@ for verb in (
     running.gate,
     running.compare,
     rendering.render,
+    exporting.export,
     rectifying.rectify,
     photographs.pose,
     photographs.reconstruct,

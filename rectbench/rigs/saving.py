@@ -33,12 +33,8 @@ def save_rig(rig: Rig, path: str | os.PathLike[str], format: str = "native") -> 
     Raises UnknownName for a format that is not written; InvalidInput in one line for a camera that the
     format cannot hold exactly, with the formats that can, and for a path that cannot be written.
     """
-    writing = _writing(format)
-    target = Path(path)
-    try:
-        texts = writing.texts(rig, target.name)
-    except NotHeld as reason:
-        raise InvalidInput(f"{reason}; expected one of the formats that have: {_holders(rig)}") from None
+    writing, target = _writing(format), Path(path)
+    texts = calibration_texts(rig, target.name, format)
     folder = target if writing.in_folder else target.parent
     if writing.in_folder:
         _make_folder(folder)
@@ -47,6 +43,17 @@ def save_rig(rig: Rig, path: str | os.PathLike[str], format: str = "native") -> 
     for loss in writing.losses(rig):
         log.warning("%s: %s %s", target, format, loss)
     return tuple(files)
+
+
+def calibration_texts(rig: Rig, name: str, format: str) -> Mapping[str, str]:
+    """The content of each file of a calibration by its name, as `save_rig` writes it to a path of that name.
+
+    Raises UnknownName and InvalidInput as `save_rig` does.
+    """
+    try:
+        return _writing(format).texts(rig, name)
+    except NotHeld as reason:
+        raise InvalidInput(f"{reason}; expected one of the formats that have: {_holders(rig)}") from None
 
 
 def written_formats() -> dict[str, bool]:
