@@ -78,7 +78,7 @@ class Export:
         }
 
     def plugin(self) -> Plugin:
-        """The method; raises InvalidInput for one that finds the geometry itself, as its rows are not exact."""
+        """The method; raises InvalidInput for one that works from matches, whose rows are not exact."""
         plugin = registry("methods").get(self.method)
         if "pose" not in plugin.value.needs:
             raise InvalidInput(

@@ -290,6 +290,21 @@ def test_kalibr_s_keys_are_kalibr_s(tmp_path: Path) -> None:
     np.testing.assert_array_equal(np.array(chain["cam1"]["T_cn_cnm1"])[:3, 3], UNIFIEDS.t_right_left)
 
 
+def test_colmap_itself_projects_as_the_camera_does(tmp_path: Path) -> None:
+    """With COLMAP's own code, where `pycolmap` is installed."""
+    pycolmap = pytest.importorskip("pycolmap")
+    points = RAYS[RAYS[:, 2] > 0.4]
+    for name in (name for name, (_, formats) in HOLDERS.items() if "colmap" in formats):
+        rig = rig_of(Camera(name.split()[0], (1280, 960), FIXED | HOLDERS[name][0]))
+        rig.save(tmp_path / name, "colmap")
+        model = pycolmap.Reconstruction(tmp_path / name)
+        image = next(image for image in model.images.values() if image.name == "right.png")
+        expected, ok = rig.right.project(rig.right_from_left(points))
+        pose, camera = image.cam_from_world(), model.cameras[image.camera_id]
+        read = np.array([camera.img_from_cam(pose * point) for point in points[ok]])
+        np.testing.assert_allclose(read - 0.5, expected[ok], atol=1e-9, err_msg=name)
+
+
 def test_a_pixel_centre_is_a_half_in_colmap(tmp_path: Path) -> None:
     cameras, *_ = FISHEYES.save(tmp_path / "model", "colmap")
     line = next(line for line in cameras.read_text().splitlines() if line.startswith("1 "))
