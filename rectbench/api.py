@@ -1,4 +1,4 @@
-"""The verbs of `import rectbench as rb`: estimate a pose, rectify a rig, render a scene, run a report."""
+"""The verbs of `import rectbench as rb`: estimate a pose, rectify a rig, render or export, run a report."""
 
 from __future__ import annotations
 
@@ -24,6 +24,7 @@ from rectbench.warps import Framing, Images, Matches, Rectification, pose_proble
 if TYPE_CHECKING:
     import pandas as pd
 
+    from rectbench.bench.exporting import Exported
     from rectbench.bench.rectified_images import RectifiedImages
     from rectbench.bench.report_spec import Report
     from rectbench.rendering.images import StereoPair
@@ -220,11 +221,59 @@ def render(
     found = registry("scenes").get(scene)
     source = str(Path(scene).resolve()) if is_path(scene) else str(scene)
     calibrated = rig if isinstance(rig, Rig) else load_rig(rig)
-    if image_width is not None and not (isinstance(image_width, int | np.integer) and image_width > 0):
-        raise InvalidInput(f"image_width is {image_width!r}; expected a width in pixels")
-    true_rig = placed(calibrated, found.name, motion, _checked_seed(seed), image_width)
+    true_rig = placed(calibrated, found.name, motion, _checked_seed(seed), _checked_width(image_width))
     noise = render_seed(found.name, calibrated.name, motion, seed)
     return render_pair(build_world(source, seed), true_rig, seed=noise, spp=spp, quality=quality)
+
+
+def export_dataset(
+    scene: str | Path,
+    rig: Rig | str | Path,
+    out: str | Path,
+    *,
+    motion: str = "as-calibrated",
+    seeds: Sequence[int] = (0,),
+    spp: int = 64,
+    quality: str = "path",
+    image_width: int | None = None,
+    method: str | Path = "local-homography",
+    options: Mapping[str, Any] | None = None,
+    progress: bool | None = None,
+) -> Exported:
+    """Render a dataset that other tools open: a pair a seed, the truth about it, and its rectification.
+
+    Parameters
+    ----------
+    scene, rig, motion, spp, quality, image_width : as in `render`, which gives the same images for a seed.
+    out : the dataset's folder; what of the same dataset is whole there already is kept.
+    seeds : a pair each.
+    method, options : what rectifies the pairs, from their true rig; a method that works from the pose.
+    progress : a bar on stderr; on a terminal by default.
+
+    Written are images, depth, visibility and flow; the rectified pair with its masks and exact disparity;
+    calibrations; `README.md`, which says what each file holds and how it is read, and `dataset.json`. See
+    `rectbench.bench.exporting`. Raises UnknownName, InvalidInput (for a folder with another dataset, too),
+    Unsupported where the method cannot serve the rig, Unavailable where this machine cannot render.
+    """
+    from rectbench.bench.exporting import Export, export_dataset
+    from rectbench.bench.progress import progress_for
+    from rectbench.bench.run_folder import check_writable
+
+    check_writable(Path(out))
+    checked = [_checked_seed(seed) for seed in dict.fromkeys(seeds)]
+    if not checked:
+        raise InvalidInput("seeds are empty; expected whole numbers from 0 on, a pair each")
+    export = Export(
+        scene_source=str(Path(scene).resolve()) if is_path(scene) else str(scene),
+        rig=rig if isinstance(rig, Rig) else load_rig(rig),
+        motion=motion,
+        spp=spp,
+        quality=quality,
+        image_width=_checked_width(image_width),
+        method=str(method),
+        options=options or {},
+    )
+    return export_dataset(export, checked, Path(out), progress_for(progress))
 
 
 def run(
@@ -269,6 +318,14 @@ def _checked_seed(seed: Any) -> int:
     if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or seed < 0:
         raise InvalidInput(f"seed is {seed!r}; expected a whole number from 0 on")
     return int(seed)
+
+
+def _checked_width(image_width: Any) -> int | None:
+    if image_width is None:
+        return None
+    if not isinstance(image_width, int | np.integer) or image_width < 1:
+        raise InvalidInput(f"image_width is {image_width!r}; expected a width in pixels")
+    return int(image_width)
 
 
 def _checked_positive(value: Any, name: str) -> float:

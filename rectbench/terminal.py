@@ -80,12 +80,20 @@ def _described(kind: str) -> list[tuple[str, str]]:
         ]
         return [*noises, (ESTIMATED, "found in the images: features, five points, bundle adjustment")]
     if kind == "formats":
-        return list(calibration_formats().items())
+        return [(name, f"{title}{_how_written(name)}") for name, title in calibration_formats().items()]
     rigs = [(name, load_rig(name)) for name in rig_names()]
     return [
         (name, f"{r.left.model}, {r.left.width}x{r.left.height}, baseline {1000 * r.baseline_m:.0f} mm")
         for name, r in rigs
     ]
+
+
+def _how_written(format: str) -> str:
+    """What is said of a format that is not only read."""
+    from rectbench.rigs import written_formats
+
+    in_folder = written_formats().get(format)
+    return {None: "", False: "; read and written", True: "; read and written, as a folder"}[in_folder]
 
 
 def _add_options(table: Table, method: Any) -> None:

@@ -10,7 +10,17 @@ from __future__ import annotations
 import logging
 import sys
 
-from rectbench.cli import machine, names, photographs, rectifying, rendering, running, uncertainty
+from rectbench.cli import (
+    calibrations,
+    exporting,
+    machine,
+    names,
+    photographs,
+    rectifying,
+    rendering,
+    running,
+    uncertainty,
+)
 from rectbench.cli.app import WRONG_USAGE, app
 from rectbench.errors import RectbenchError
 
@@ -21,10 +31,12 @@ for verb in (
     running.gate,
     running.compare,
     rendering.render,
+    exporting.export,
     rectifying.rectify,
     photographs.pose,
     photographs.reconstruct,
     uncertainty.uncertainty,
+    calibrations.convert,
     machine.check,
     machine.doctor,
     machine.gc,

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from rectbench.cli.app import INCOMPLETE, OptionTexts, RunFolder, split_names
-from rectbench.errors import InvalidInput, UnknownName
+from rectbench.cli.app import INCOMPLETE, OptionTexts, RunFolder, split_names, whole_numbers
+from rectbench.errors import UnknownName
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -56,7 +56,7 @@ def run(
         "methods": split_names(methods),
         "scenes": split_names(scenes),
         "rigs": split_names(rigs),
-        "seeds": _numbers(seeds),
+        "seeds": whole_numbers("seeds", seeds),
         "jobs": jobs,
         "dask": dask,
         "fresh": fresh,
@@ -129,16 +129,6 @@ def compare(
             raise UnknownName("metric", name, known)
     terminal.show_comparison(comparison, chosen)
     raise typer.Exit(INCOMPLETE if comparison.table.empty else 0)
-
-
-def _numbers(texts: list[str] | None) -> list[int] | None:
-    words = split_names(texts)
-    try:
-        return None if words is None else [int(word) for word in words]
-    except ValueError:
-        raise InvalidInput(
-            f"seeds are {','.join(words or [])}; expected whole numbers such as 0,1,2"
-        ) from None
 
 
 def _first_reason(table: pd.DataFrame) -> Any:

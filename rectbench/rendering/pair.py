@@ -13,13 +13,15 @@ from rectbench.errors import InvalidInput, UnknownName
 from rectbench.rendering.images import Image, StereoPair, radiance, srgb8
 from rectbench.rendering.integrator import fast_integrator
 from rectbench.rendering.mitsuba_scene import fast_scene, path_scene
+from rectbench.rendering.rectified_truth import RectifiedTruth
 from rectbench.rendering.sensor import load_sensor
-from rectbench.rendering.tracing import posed_cameras, trace_truth
+from rectbench.rendering.tracing import posed_cameras, trace_rectified, trace_truth
 from rectbench.rendering.truth import Truth
 from rectbench.rendering.variant import mitsuba
 from rectbench.rendering.world import World
 from rectbench.rendering.xml_world import XmlWorld
 from rectbench.rigs.rig import Rig
+from rectbench.warps import Rectification
 
 Quality = Literal["path", "fast"]
 QUALITIES: tuple[str, ...] = get_args(Quality)
@@ -124,6 +126,10 @@ class Stage:
     def survey(self, rig: Rig) -> Truth:
         """The truth about a rig; the same at every quality."""
         return trace_truth(self.scene, rig, self.world_from_left)
+
+    def survey_rectified(self, rect: Rectification) -> RectifiedTruth:
+        """The truth about the rectified left image, for a rectification of the true rig."""
+        return trace_rectified(self.scene, rect, self.world_from_left)
 
     def _image(self, sensor: Any, seed: int, spp: int) -> Image:
         brightest = BRIGHTEST / self.exposure

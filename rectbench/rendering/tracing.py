@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,15 +10,28 @@ from numpy.typing import NDArray
 from rectbench.cameras import Camera
 from rectbench.cameras.arrays import FloatArray
 from rectbench.cameras.projection import BoolArray
+from rectbench.rendering.rectified_truth import RectifiedTruth, RectifiedView
 from rectbench.rendering.truth import Truth
 from rectbench.rendering.variant import drjit, mitsuba
 from rectbench.rigs.rig import Rig
+from rectbench.warps import Rectification
 
 RAYS_AT_ONCE = 1 << 20
 """Rays in flight: bounds the float64 scratch space of a large image."""
 
 SAME_SURFACE = 1e-4
 """Share of a distance by which two hits may differ and still be one: float32 rays err by 1e-6."""
+
+
+class View(Protocol):
+    """Pixels that are rays: a camera, or a rectified image of one."""
+
+    @property
+    def width(self) -> int: ...
+    @property
+    def height(self) -> int: ...
+    def unproject(self, pixels: FloatArray) -> tuple[FloatArray, BoolArray]:
+        """Unit rays [..., 3] of pixels [..., 2], and which of them show anything."""
 
 
 class PosedCamera(NamedTuple):
@@ -39,26 +52,34 @@ def posed_cameras(rig: Rig, world_from_left: FloatArray) -> tuple[PosedCamera, P
 def trace_truth(scene: Any, rig: Rig, world_from_left: FloatArray) -> Truth:
     """The truth of a rig in a `mi.Scene`, its left camera at `world_from_left` [4, 4]."""
     left, right = posed_cameras(rig, world_from_left)
-    depth_left, visible_left = _trace(scene, left, right)
-    depth_right, visible_right = _trace(scene, right, left)
+    depth_left, visible_left = _trace(scene, left.camera, left.world_from_camera, right)
+    depth_right, visible_right = _trace(scene, right.camera, right.world_from_camera, left)
     return Truth(rig, depth_left, depth_right, visible_left, visible_right)
 
 
-def _trace(scene: Any, here: PosedCamera, there: PosedCamera) -> tuple[NDArray[np.float32], BoolArray]:
-    """Depth [H, W] along the rays of `here`, and which of the points `there` sees too."""
-    camera, world_from_here = here
-    depth = np.full((camera.height, camera.width), np.nan, dtype=np.float32)
-    visible = np.zeros((camera.height, camera.width), dtype=bool)
-    u = np.arange(camera.width, dtype=np.float64)
-    rows = max(1, RAYS_AT_ONCE // camera.width)
-    for top in range(0, camera.height, rows):
-        v = np.arange(top, min(top + rows, camera.height), dtype=np.float64)
-        rays, ok = camera.unproject(np.stack(np.meshgrid(u, v), axis=-1))
-        directions = rays[ok] @ world_from_here[:3, :3].T
+def trace_rectified(scene: Any, rect: Rectification, world_from_left: FloatArray) -> RectifiedTruth:
+    """The truth about a rectified left image, its rig being the true one, in a `mi.Scene`."""
+    _, right = posed_cameras(rect.rig, world_from_left)
+    depth, visible = _trace(scene, RectifiedView(rect), world_from_left, right)
+    return RectifiedTruth(rect, depth, visible)
+
+
+def _trace(
+    scene: Any, view: View, world_from_view: FloatArray, there: PosedCamera
+) -> tuple[NDArray[np.float32], BoolArray]:
+    """Depth [H, W] along the rays of a view, and which of the points `there` sees too."""
+    depth = np.full((view.height, view.width), np.nan, dtype=np.float32)
+    visible = np.zeros((view.height, view.width), dtype=bool)
+    u = np.arange(view.width, dtype=np.float64)
+    rows = max(1, RAYS_AT_ONCE // view.width)
+    for top in range(0, view.height, rows):
+        v = np.arange(top, min(top + rows, view.height), dtype=np.float64)
+        rays, ok = view.unproject(np.stack(np.meshgrid(u, v), axis=-1))
+        directions = rays[ok] @ world_from_view[:3, :3].T
         distance, unoccluded = _cast(
-            scene, world_from_here[:3, 3], there.world_from_camera[:3, 3], directions
+            scene, world_from_view[:3, 3], there.world_from_camera[:3, 3], directions
         )
-        points = world_from_here[:3, 3] + distance[:, None].astype(np.float64) * directions
+        points = world_from_view[:3, 3] + distance[:, None].astype(np.float64) * directions
         points_there = (points - there.world_from_camera[:3, 3]) @ there.world_from_camera[:3, :3]
         depth[top : top + len(v)][ok] = distance
         visible[top : top + len(v)][ok] = unoccluded & there.camera.sees(points_there)

@@ -11,7 +11,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 from zipfile import BadZipFile
 
@@ -23,7 +22,7 @@ from rectbench.cameras.arrays import FloatArray
 from rectbench.cameras.projection import BoolArray
 from rectbench.errors import InvalidInput
 from rectbench.rendering.variant import mitsuba
-from rectbench.rigs.native import read_native
+from rectbench.rigs.native import dump, read_native, rig_fields
 from rectbench.rigs.rig import Rig
 
 SIDES = ("left", "right")
@@ -123,7 +122,7 @@ class Truth:
         if derived:
             arrays |= {f"{name}_{side}": a for side, layers in self._layers() for name, a in layers.items()}
         with Path(path).open("wb") as file:
-            np.savez(file, rig=np.array(_rig_text(self.rig)), **arrays)
+            np.savez(file, rig=np.array(dump(rig_fields(self.rig))), **arrays)
 
     @classmethod
     def load(cls, path: str | Path) -> Truth:
@@ -204,9 +203,3 @@ def _spread(
     draw = np.lexsort((rng.random(len(order)), turn))[:n]
     chosen: NDArray[np.int64] = np.sort(order[draw])
     return chosen
-
-
-def _rig_text(rig: Rig) -> str:
-    with TemporaryDirectory() as folder:
-        rig.save(Path(folder) / "rig.yaml")
-        return (Path(folder) / "rig.yaml").read_text(encoding="utf-8")

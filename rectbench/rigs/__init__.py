@@ -4,9 +4,9 @@ from rectbench.rigs.covariance import RigCovariance
 from rectbench.rigs.covariance_files import load_covariance
 from rectbench.rigs.loading import calibration_formats, load_rig, rig_names
 from rectbench.rigs.motions import MOTIONS, Motion
-from rectbench.rigs.native import write_rig
 from rectbench.rigs.poses import POSES, PoseNoise, perturb
 from rectbench.rigs.rig import Rig
+from rectbench.rigs.saving import save_rig, written_formats
 
 __all__ = [
     "MOTIONS",
@@ -20,5 +20,6 @@ __all__ = [
     "load_rig",
     "perturb",
     "rig_names",
-    "write_rig",
+    "save_rig",
+    "written_formats",
 ]

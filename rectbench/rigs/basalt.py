@@ -3,14 +3,17 @@
 `T_imu_cam` takes points of the camera to the IMU: a translation `px py pz` in metres and a quaternion
 `qx qy qz qw`. Camera 0 is the left one, camera 1 the right one, unless others are asked for (cam0,
 cam1, ... by their places). The models are those of basalt-headers' documentation; pixel (0, 0) is the
-centre of a pixel.
+centre of a pixel. Written with the left camera in the place of the IMU, about which a rig tells nothing.
 """
 
 from __future__ import annotations
 
+import json
 import math
 import re
 from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -19,7 +22,19 @@ from rectbench.cameras import Camera
 from rectbench.cameras.arrays import FloatArray
 from rectbench.errors import InvalidInput
 from rectbench.rigs.documents import Section, blaming, shown
-from rectbench.rigs.formats import Given, RigFormat, View, rig_of_views, rigid, single
+from rectbench.rigs.formats import (
+    Given,
+    RigFormat,
+    View,
+    Writing,
+    inverse,
+    layout_of,
+    lost_angles,
+    pose_matrix,
+    rig_of_views,
+    rigid,
+    single,
+)
 from rectbench.rigs.rig import Rig
 from rectbench.rigs.sources import Source
 
@@ -35,6 +50,26 @@ MODELS = {
     "fov": ("field-of-view", (*FOCAL, "w")),
 }
 """The model and parameters of each `camera_type`. Basalt's ucm is the extended one with beta = 1."""
+
+OURS = {"w": "omega"}
+LAYOUTS = {
+    name: (model, [OURS.get(param, param) for param in names])
+    for name, (model, names) in MODELS.items()
+    if name != "ucm"  # has no place for beta, and eucm holds all that it does
+}
+
+UNKNOWN: dict[str, Any] = {
+    "calib_accel_bias": [0.0] * 9,
+    "calib_gyro_bias": [0.0] * 12,
+    "imu_update_rate": 200.0,
+    "accel_noise_std": [1.0] * 3,
+    "gyro_noise_std": [1.0] * 3,
+    "accel_bias_std": [1.0] * 3,
+    "gyro_bias_std": [1.0] * 3,
+    "cam_time_offset_ns": 0,
+    "vignette": [],
+}
+"""What Basalt wants in a file and a rig does not tell: no bias, deviations of 1, no vignette."""
 
 QUATERNION_TOLERANCE = 1e-3
 """How far from 1 a quaternion's length may be; what is farther is another thing than a rotation."""
@@ -91,4 +126,51 @@ def _recognises(source: Source) -> bool:
     return isinstance(content, dict) and {"T_imu_cam", "intrinsics"} <= content.keys()
 
 
-FORMAT = RigFormat("basalt", "Basalt calibration.json", _recognises, _read, has_many=True)
+def _texts(rig: Rig, name: str) -> dict[str, str]:
+    """The rig as Basalt's programs load it, the left camera in the place of the IMU."""
+    cameras = [_camera_fields(rig.left, "left"), _camera_fields(rig.right, "right")]
+    content = {
+        "T_imu_cam": [_pose_fields(np.eye(4)), _pose_fields(inverse(pose_matrix(rig)))],
+        "intrinsics": cameras,
+        "resolution": [list(rig.left.size), list(rig.right.size)],
+        **UNKNOWN,
+    }
+    return {name: json.dumps({"value0": content}, indent=4) + "\n"}
+
+
+def _camera_fields(camera: Camera, side: str) -> dict[str, Any]:
+    model, equal = layout_of(camera, LAYOUTS, "basalt", side)
+    if _has_radius(equal):
+        model = "pinhole-radtan8"
+    params = {name: equal.params[OURS.get(name, name)] for name in MODELS[model][1]}
+    if model == "pinhole-radtan8":
+        params["rpmax"] = math.tan(math.radians(equal.max_angle_deg or 0.0))
+    return {"camera_type": model, "intrinsics": params}
+
+
+def _has_radius(camera: Camera) -> bool:
+    """Whether `rpmax`, a radius on the plane z = 1, says where the camera's image circle ends."""
+    return camera.model == "pinhole" and camera.max_angle_deg is not None and camera.max_angle_deg < 90
+
+
+def _losses(rig: Rig) -> list[str]:
+    left, right = (
+        replace(camera, max_angle_deg=None) if _has_radius(camera) else camera
+        for camera in (rig.left, rig.right)
+    )
+    return lost_angles(replace(rig, left=left, right=right))
+
+
+def _pose_fields(T: FloatArray) -> dict[str, float]:
+    numbers = [*T[:3, 3], *Rotation.from_matrix(T[:3, :3]).as_quat()]
+    return dict(zip(("px", "py", "pz", "qx", "qy", "qz", "qw"), map(float, numbers), strict=True))
+
+
+FORMAT = RigFormat(
+    "basalt",
+    "Basalt calibration.json",
+    _recognises,
+    _read,
+    has_many=True,
+    write=Writing(_texts, losses=_losses),
+)

@@ -9,6 +9,7 @@
 | SCARAMUZZA | `poly_parameters`, `inv_poly_parameters`, `affine_parameters` ac ad ae cx cy | ocam |
 
 Pixel (0, 0) is the centre of a pixel. The file does not say where the camera stands.
+All but SCARAMUZZA are written, with a third file for the pose.
 """
 
 from __future__ import annotations
@@ -16,10 +17,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+import cv2
+
 from rectbench.cameras import Camera
 from rectbench.rigs.documents import Section, blaming
-from rectbench.rigs.formats import CameraFormat, Given, View
+from rectbench.rigs.formats import CameraFormat, Given, View, Writing, layout_of
 from rectbench.rigs.ocamcalib import stretched
+from rectbench.rigs.pose import pose_text
+from rectbench.rigs.rig import Rig
 from rectbench.rigs.sources import Source
 
 RADTAN = {name: name for name in ("k1", "k2", "p1", "p2")}
@@ -29,6 +34,15 @@ MEI = {"gamma1": "fx", "gamma2": "fy", "u0": "cx", "v0": "cy"}
 KANNALA_BRANDT = {"mu": "fx", "mv": "fy", "u0": "cx", "v0": "cy"}
 KANNALA_BRANDT_RADIAL = {"k2": "k1", "k3": "k2", "k4": "k3", "k5": "k4"}
 MODELS = ("PINHOLE", "PINHOLE_FULL", "MEI", "KANNALA_BRANDT", "SCARAMUZZA")
+
+DISTORTION, PROJECTION, MIRROR = "distortion_parameters", "projection_parameters", "mirror_parameters"
+WRITTEN: dict[str, tuple[str, dict[str, dict[str, str]]]] = {
+    "PINHOLE": ("pinhole", {DISTORTION: RADTAN, PROJECTION: PINHOLE}),
+    "PINHOLE_FULL": ("pinhole", {DISTORTION: RATIONAL, PROJECTION: PINHOLE}),
+    "MEI": ("unified", {MIRROR: {"xi": "xi"}, DISTORTION: RADTAN, PROJECTION: MEI}),
+    "KANNALA_BRANDT": ("kannala-brandt", {PROJECTION: KANNALA_BRANDT_RADIAL | KANNALA_BRANDT}),
+}
+"""The models that are written, and the sections of their numbers by CamOdoCal's and our names."""
 
 Lens = tuple[str, dict[str, Any]]
 """A projection model and its parameters."""
@@ -99,9 +113,38 @@ def _polynomial(file: Section, key: str) -> tuple[float, ...]:
     return tuple(section.number(f"p{place}", "a coefficient") for place in range(count))
 
 
+def camera_text(camera: Camera, side: str, format: str) -> str:
+    """The file of a camera as `cv2.FileStorage` writes it; `format` is what a refusal calls it."""
+    layouts = {
+        kind: (model, [ours for names in sections.values() for ours in names.values()])
+        for kind, (model, sections) in WRITTEN.items()
+    }
+    kind, equal = layout_of(camera, layouts, format, side)
+    storage = cv2.FileStorage(".yml", cv2.FILE_STORAGE_WRITE | cv2.FILE_STORAGE_MEMORY)
+    storage.write("model_type", kind)
+    storage.write("camera_name", side)
+    storage.write("image_width", equal.width)
+    storage.write("image_height", equal.height)
+    for section, names in WRITTEN[kind][1].items():
+        storage.startWriteStruct(section, cv2.FileNode_MAP)
+        for theirs, ours in names.items():
+            storage.write(theirs, equal.params[ours])
+        storage.endWriteStruct()
+    text: str = storage.releaseAndGetString()
+    return text
+
+
+def _texts(rig: Rig, name: str) -> dict[str, str]:
+    """A file a camera, and one with the pose."""
+    cameras = {"left": rig.left, "right": rig.right}
+    files = {f"{side}.yaml": camera_text(camera, side, "camodocal") for side, camera in cameras.items()}
+    return files | {"pose.yaml": pose_text(rig)}
+
+
 FORMAT = CameraFormat(
     "camodocal",
     "CamOdoCal camera, as VINS and KITTI-360 use it (YAML; two files and a pose)",
     lambda source: "model_type" in source.keys and "cam0_calib" not in source.keys,
     read_view,
+    write=Writing(_texts, in_folder=True),
 )

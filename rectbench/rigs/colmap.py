@@ -15,7 +15,8 @@ a pixel further than rectbench. Its scale is arbitrary unless something fixed it
 | THIN_PRISM_FISHEYE, RAD_TAN_THIN_PRISM_FISHEYE | thin-prism-fisheye, fisheye624 |
 | SIMPLE_DIVISION, DIVISION | division |
 
-EQUIRECTANGULAR, a panorama and no lens, is refused.
+EQUIRECTANGULAR, a panorama and no lens, is refused. Written is a text model of two images, left.png and
+right.png, in metres.
 """
 
 from __future__ import annotations
@@ -45,7 +46,7 @@ from rectbench.rigs.colmap_files import (
     read_rigs,
 )
 from rectbench.rigs.documents import blaming, checked_size, one_line, shown
-from rectbench.rigs.formats import UNITS, Given, RigFormat, inverse, rigid
+from rectbench.rigs.formats import UNITS, Given, RigFormat, Writing, inverse, layout_of, pose_matrix, rigid
 from rectbench.rigs.rig import Rig
 from rectbench.rigs.sources import Source
 
@@ -79,6 +80,9 @@ MODELS: dict[str, tuple[str, tuple[str, ...]]] = {
 """Projection model and parameters, in COLMAP's order; a binary file calls the first 18 by their place."""
 
 NUMBERED = {place: (name, len(MODELS[name][1])) for place, name in enumerate(list(MODELS)[:18])}
+
+LAYOUTS = {name: layout for name, layout in MODELS.items() if "fx" in layout[1]}
+"""The models that are written; those with one focal length are special cases of them."""
 
 CAMERA_LINE = re.compile(r"^\s*\d+\s+[A-Z][A-Z0-9_]*\s+\d+\s+\d+\s+[-+.\d]", re.MULTILINE)
 OTHER_FILES = ("images", "rigs", "frames", "points3d", "project")
@@ -282,10 +286,42 @@ def _read(sources: Sequence[Source], given: Given) -> Rig:
     return read_colmap(path, given.cameras or (), given.size, given.unit)
 
 
+def _texts(rig: Rig, name: str) -> dict[str, str]:
+    """A text model of two images, the left one's camera in the world's place, and of no points."""
+    poses = (("left", rig.left, np.eye(4)), ("right", rig.right, pose_matrix(rig)))
+    cameras = [_camera_line(number, camera, side) for number, (side, camera, _) in enumerate(poses, 1)]
+    images = [_image_line(number, f"{side}.png", T) for number, (side, _, T) in enumerate(poses, 1)]
+    return {
+        "cameras.txt": "# Camera list with one line of data per camera:\n"
+        "#   CAMERA_ID, MODEL, WIDTH, HEIGHT, PARAMS[]\n" + "".join(cameras),
+        "images.txt": "# Image list with two lines of data per image:\n"
+        "#   IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, NAME\n"
+        "#   POINTS2D[] as (X, Y, POINT3D_ID)\n" + "".join(images),
+        "points3D.txt": "# 3D point list with one line of data per point:\n"
+        "#   POINT3D_ID, X, Y, Z, R, G, B, ERROR, TRACK[] as (IMAGE_ID, POINT2D_IDX)\n",
+    }
+
+
+def _camera_line(number: int, camera: Camera, side: str) -> str:
+    model, equal = layout_of(camera, LAYOUTS, "colmap", side)
+    params = dict(equal.params)
+    params["cx"] += 0.5
+    params["cy"] += 0.5
+    numbers = " ".join(repr(params[name]) for name in LAYOUTS[model][1])
+    return f"{number} {model} {equal.width} {equal.height} {numbers}\n"
+
+
+def _image_line(number: int, name: str, T_camera_world: FloatArray) -> str:
+    x, y, z, w = Rotation.from_matrix(T_camera_world[:3, :3]).as_quat()
+    pose = " ".join(repr(float(value)) for value in (w, x, y, z, *T_camera_world[:3, 3]))
+    return f"{number} {pose} {number} {name}\n\n"
+
+
 FORMAT = RigFormat(
     "colmap",
     "COLMAP sparse model: cameras and images or rigs (.txt, .bin)",
     _recognises,
     _read,
     has_many=True,
+    write=Writing(_texts, in_folder=True),
 )

@@ -168,10 +168,11 @@ class RigCovariance:
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write it as YAML, which `load_covariance` reads."""
-        from rectbench.rigs.native import dump, replace_file
+        from rectbench.rigs.native import dump
+        from rectbench.rigs.saving import replace_files
 
         content = {"parameters": list(self.parameters), "covariance": self.matrix.tolist()}
-        replace_file(Path(path), dump({"source": self.source, **content} if self.source else content))
+        replace_files({Path(path): dump({"source": self.source, **content} if self.source else content)})
 
 
 def moved(rig: Rig, change: Mapping[str, float]) -> Rig:

@@ -1,15 +1,17 @@
-"""What a calibration format is: how its files are told from others, and what is read from them."""
+"""What a calibration format is: how its files are told from others, what is read, and what is written."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
 from rectbench.cameras import Camera
 from rectbench.cameras.arrays import FloatArray
+from rectbench.cameras.equivalents import equal_cameras
+from rectbench.cameras.lens import lens_named
 from rectbench.errors import InvalidInput, UnknownName
 from rectbench.rigs.documents import blaming
 from rectbench.rigs.rig import Rig
@@ -59,13 +61,42 @@ class View:
     T_shared_camera: FloatArray | None = field(default=None, repr=False)
 
 
+class NotHeld(InvalidInput):
+    """A format has no words for a camera; the message says which one, and what of it."""
+
+
+def lost_angles(rig: Rig) -> list[str]:
+    """What a format without a place for `max_angle_deg` leaves out of a rig, a line a camera."""
+    return [
+        f"leaves out the {side} camera's max_angle_deg = {camera.max_angle_deg:g}"
+        for side, camera in (("left", rig.left), ("right", rig.right))
+        if camera.max_angle_deg is not None
+    ]
+
+
+@dataclass(frozen=True)
+class Writing:
+    """How a format is written.
+
+    `texts` gives the content of each file by its name, of a rig and the name that the user gave; it
+    writes nothing, so that a rig is refused (NotHeld) before a file is touched. Where `in_folder`, the
+    files stand in a folder of that name, which `load_rig` reads as one rig. `losses` gives, a line each,
+    what of a rig that is not refused is not in the files, the lenses not being among it.
+    """
+
+    texts: Callable[[Rig, str], Mapping[str, str]]
+    in_folder: bool = False
+    losses: Callable[[Rig], list[str]] = lost_angles
+
+
 @dataclass(frozen=True)
 class RigFormat:
     """A format whose file, or set of files, holds both cameras and their pose.
 
     `recognises` must not raise; `read` gets every file that the user gave, the one recognised
     among them, and raises InvalidInput in one line that names file, key and expectation. Where
-    `has_many`, a file may hold more than two cameras, and `read` heeds `Given.cameras`.
+    `has_many`, a file may hold more than two cameras, and `read` heeds `Given.cameras`. `write` is
+    None for a format that is only read.
     """
 
     name: str
@@ -73,6 +104,7 @@ class RigFormat:
     recognises: Callable[[Source], bool]
     read: Callable[[Sequence[Source], Given], Rig]
     has_many: bool = False
+    write: Writing | None = None
 
 
 @dataclass(frozen=True)
@@ -83,6 +115,7 @@ class CameraFormat:
     title: str
     recognises: Callable[[Source], bool]
     read: Callable[[Source, Given], View]
+    write: Writing | None = None
 
 
 def assembled(
@@ -150,3 +183,41 @@ def single(sources: Sequence[Source]) -> Source:
 def placed(view: View, T_shared_camera: FloatArray) -> View:
     """The same camera, standing there."""
     return replace(view, T_shared_camera=T_shared_camera)
+
+
+Key = TypeVar("Key")
+Layouts = Mapping[Key, tuple[str, Collection[str]]]
+"""A format's names of camera models: the projection model of each, and the parameters it has places for."""
+
+
+def layout_of(camera: Camera, layouts: Layouts[Key], format: str, side: str) -> tuple[Key, Camera]:
+    """Which of a format's layouts holds the camera exactly, and the camera by that layout's model.
+
+    The first of the camera's own model that will do is taken, else the first of a model under which it
+    is the same camera (see `equal_cameras`). Raises NotHeld, naming the parameters that have no place.
+    """
+    for equal in equal_cameras(camera):
+        for layout, (model, names) in layouts.items():
+            if model == equal.model and not _left_out(equal, names):
+                return layout, equal
+    who = f"{format} has no place for the {side} camera, {camera.model}"
+    places = [names for model, names in layouts.values() if model == camera.model]
+    if places:
+        fewest = min((_left_out(camera, names) for names in places), key=len)
+        who += f" with {', '.join(f'{name} = {camera.params[name]:g}' for name in fewest)}"
+    raise NotHeld(who)
+
+
+def _left_out(camera: Camera, names: Collection[str]) -> list[str]:
+    """The parameters that are none of these and not at their default."""
+    defaults = lens_named(camera.model).defaults
+    return [
+        name
+        for name, value in camera.params.items()
+        if name not in names and value not in ((), defaults.get(name, 0.0))
+    ]
+
+
+def pose_matrix(rig: Rig) -> FloatArray:
+    """T_right_left [4, 4], metres."""
+    return rigid(rig.R_right_left, rig.t_right_left)

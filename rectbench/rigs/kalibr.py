@@ -4,7 +4,8 @@ The projections and their numbers are those of Kalibr's wiki, "Supported models"
 The pose is `T_cn_cnm1` of cam1, which takes points of cam0 to cam1; where that is missing, the two
 cameras' `T_cam_imu` (points of the IMU to the camera; OpenVINS may write its inverse, `T_imu_cam`).
 Of a longer chain any two cameras make a rig.
-Translations are metres, pixel (0, 0) is the centre of a pixel, there is no skew.
+Translations are metres, pixel (0, 0) is the centre of a pixel, there is no skew. Written are cam0, cam1
+and its `T_cn_cnm1`.
 """
 
 from __future__ import annotations
@@ -12,7 +13,6 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -21,8 +21,17 @@ from rectbench.cameras import Camera
 from rectbench.cameras.arrays import FloatArray
 from rectbench.errors import InvalidInput
 from rectbench.rigs.documents import Section, blaming, shown
-from rectbench.rigs.formats import Given, RigFormat, assembled, inverse, single
-from rectbench.rigs.native import dump, replace_file
+from rectbench.rigs.formats import (
+    Given,
+    RigFormat,
+    Writing,
+    assembled,
+    inverse,
+    layout_of,
+    pose_matrix,
+    single,
+)
+from rectbench.rigs.native import dump
 from rectbench.rigs.rig import Rig
 from rectbench.rigs.sources import Source
 
@@ -55,15 +64,6 @@ LAYOUTS = {
 }
 """What rectbench's models hold; `omni` with equi or fov, and `ds` and `eucm` with a distortion on top,
 are no camera that it has."""
-
-
-def write_kalibr(rig: Rig, path: str | Path) -> None:
-    """Write `rig` as a camchain; raises InvalidInput for a lens that Kalibr has no model for."""
-    T = np.eye(4)
-    T[:3, :3], T[:3, 3] = rig.R_right_left, rig.t_right_left
-    cameras = {f"cam{number}": _camera_fields(camera) for number, camera in enumerate((rig.left, rig.right))}
-    cameras["cam1"] = {"T_cn_cnm1": T.tolist(), **cameras["cam1"]}
-    replace_file(Path(path), dump(cameras))
 
 
 def _recognises(source: Source) -> bool:
@@ -134,22 +134,32 @@ def _read_parameters(section: Section, key: str, names: tuple[str, ...]) -> dict
     return dict(zip(names, numbers, strict=True))
 
 
-def _camera_fields(camera: Camera) -> dict[str, Any]:
-    """The entries of a camera under the fullest layout that holds all its parameters."""
-    used = {name for name, value in camera.params.items() if value != 0}
-    for (projection, distortion), layout in LAYOUTS.items():
-        if layout.model == camera.model and used <= {*layout.intrinsics, *layout.distortion}:
-            return {
-                "camera_model": projection,
-                "intrinsics": [camera.params[name] for name in layout.intrinsics],
-                "distortion_model": distortion,
-                "distortion_coeffs": [camera.params[name] for name in layout.distortion],
-                "resolution": list(camera.size),
-            }
-    names = ", ".join(sorted(used))
-    raise InvalidInput(f"a {camera.model} camera with {names} has no Kalibr model; expected one that has")
+def _texts(rig: Rig, name: str) -> dict[str, str]:
+    """The camchain of a rig: cam0 is the left camera, cam1 the right one."""
+    left, right = _camera_fields(rig.left, "left"), _camera_fields(rig.right, "right")
+    pose = {"T_cn_cnm1": pose_matrix(rig).tolist()}
+    return {name: dump({"cam0": left, "cam1": pose | right})}
+
+
+def _camera_fields(camera: Camera, side: str) -> dict[str, Any]:
+    """The entries of a camera under the first layout that holds it."""
+    layouts = {key: (layout.model, layout.intrinsics + layout.distortion) for key, layout in LAYOUTS.items()}
+    key, equal = layout_of(camera, layouts, "kalibr", side)
+    projection, distortion = key
+    return {
+        "camera_model": projection,
+        "intrinsics": [equal.params[name] for name in LAYOUTS[key].intrinsics],
+        "distortion_model": distortion,
+        "distortion_coeffs": [equal.params[name] for name in LAYOUTS[key].distortion],
+        "resolution": list(equal.size),
+    }
 
 
 FORMAT = RigFormat(
-    "kalibr", "Kalibr camchain, OpenVINS kalibr_imucam_chain (YAML)", _recognises, _read, has_many=True
+    "kalibr",
+    "Kalibr camchain, OpenVINS kalibr_imucam_chain (YAML)",
+    _recognises,
+    _read,
+    has_many=True,
+    write=Writing(_texts),
 )

@@ -119,7 +119,12 @@ def rig_names() -> tuple[str, ...]:
 
 def calibration_formats() -> dict[str, str]:
     """The calibration formats that are read: name and what it is."""
-    return {format.name: format.title for format in _all_formats()}
+    return {format.name: format.title for format in all_formats()}
+
+
+def all_formats() -> list[RigFormat | CameraFormat]:
+    """Every format, in the order in which files are tried on them."""
+    return [*RIG_FORMATS, *CAMERA_FORMATS, *LAST]
 
 
 def _read(paths: list[RigSource], given: Given) -> Rig:
@@ -205,11 +210,7 @@ def _camera_format(source: Source) -> CameraFormat | None:
 
 
 def _is_known(source: Source) -> bool:
-    return any(format.recognises(source) for format in _all_formats()) or pose.recognises(source)
-
-
-def _all_formats() -> list[RigFormat | CameraFormat]:
-    return [*RIG_FORMATS, *CAMERA_FORMATS, *LAST]
+    return any(format.recognises(source) for format in all_formats()) or pose.recognises(source)
 
 
 def _expected() -> str:

@@ -19,6 +19,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from scipy.spatial.transform import Rotation
 
 from rectbench.cameras import Camera
@@ -26,8 +27,8 @@ from rectbench.cameras.arrays import FloatArray
 from rectbench.cameras.brown import COEFFICIENTS
 from rectbench.errors import InvalidInput
 from rectbench.rigs.documents import MAX_BYTES, Section, blaming, read_bytes, shown
-from rectbench.rigs.formats import CameraFormat, Given, View, inverse, rigid
-from rectbench.rigs.rig import checked_rotation
+from rectbench.rigs.formats import CameraFormat, Given, View, Writing, inverse, layout_of, pose_matrix, rigid
+from rectbench.rigs.rig import Rig, checked_rotation
 from rectbench.rigs.sources import Source
 
 FOCAL = ("fx", "fy", "cx", "cy")
@@ -214,4 +215,29 @@ def _recognises(source: Source) -> bool:
     return bool(RECOGNISED.search(source.content[: 1 << 16].decode("latin-1")))
 
 
-FORMAT = CameraFormat("mrcal", "mrcal .cameramodel (two files)", _recognises, read_view)
+def _texts(rig: Rig, name: str) -> dict[str, str]:
+    """A file a camera, the left one standing in the reference frame."""
+    poses = (("left", rig.left, np.eye(4)), ("right", rig.right, pose_matrix(rig)))
+    return {f"{side}.cameramodel": _text_of(camera, T, side) for side, camera, T in poses}
+
+
+def _text_of(camera: Camera, T_cam_ref: FloatArray, side: str) -> str:
+    model, equal = layout_of(camera, MODELS, "mrcal", side)
+    rt = [*Rotation.from_matrix(T_cam_ref[:3, :3]).as_rotvec(), *T_cam_ref[:3, 3]]
+    entries = {
+        "lensmodel": f"LENSMODEL_{model}",
+        "intrinsics": [equal.params[name] for name in MODELS[model][1]],
+        "extrinsics": [float(number) for number in rt],  # every version knows it; new ones say rt_cam_ref
+        "imagersize": list(equal.size),
+    }
+    lines = "".join(f"    {key!r}: {value!r},\n" for key, value in entries.items())
+    return f"{{\n{lines}}}\n"
+
+
+FORMAT = CameraFormat(
+    "mrcal",
+    "mrcal .cameramodel (two files)",
+    _recognises,
+    read_view,
+    write=Writing(_texts, in_folder=True),
+)

@@ -31,9 +31,8 @@ from typing import Any
 import yaml
 
 from rectbench.cameras import Camera
-from rectbench.errors import InvalidInput
 from rectbench.rigs.documents import Section, blaming, parse_document
-from rectbench.rigs.formats import Given, RigFormat, assembled, rigid, single
+from rectbench.rigs.formats import Given, RigFormat, Writing, assembled, rigid, single
 from rectbench.rigs.rig import Rig
 
 MARK = "rectbench_rig"
@@ -65,11 +64,6 @@ def read_fields(document: Section, given: Given) -> Rig:
     t = document.numbers("t_right_left", "three metres", 3)
     rig = assembled(left, right, rigid(R, t), given, document.file, name, unit="m")
     return replace(rig, source=source)
-
-
-def write_rig(rig: Rig, path: str | os.PathLike[str]) -> None:
-    """Write `rig` to `path`, whole or not at all; what was there before stays until then."""
-    replace_file(Path(path), dump(rig_fields(rig)))
 
 
 def rig_fields(rig: Rig) -> dict[str, Any]:
@@ -117,24 +111,6 @@ def _camera_fields(camera: Camera) -> dict[str, Any]:
     return fields
 
 
-def replace_file(path: Path, text: str) -> None:
-    """Write a text file, whole or not at all; what was there before stays until then."""
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
-    try:
-        try:
-            with temporary.open("w", encoding="utf-8", newline="\n") as stream:
-                stream.write(text)
-                stream.flush()
-                os.fsync(stream.fileno())
-            temporary.replace(path)
-        finally:
-            temporary.unlink(missing_ok=True)
-    except OSError as error:
-        raise InvalidInput(
-            f"{path}: cannot be written ({error.strerror}); expected a path in a folder"
-        ) from None
-
-
 class _Dumper(yaml.SafeDumper):
     """Blocks for mappings and for matrices, a line for a list of numbers, folded prose."""
 
@@ -159,4 +135,5 @@ FORMAT = RigFormat(
     "rectbench's own YAML",
     lambda source: MARK in source.keys,
     lambda sources, given: read_fields(single(sources).document, given),
+    write=Writing(lambda rig, name: {name: dump(rig_fields(rig))}, losses=lambda rig: []),
 )

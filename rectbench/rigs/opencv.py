@@ -15,11 +15,13 @@ order given, left first. Four distortion coefficients mean a pinhole camera unle
 `fisheye`. Where the cameras differ in lens or size, `model_1`, `imageSize_1` and the like tell them apart.
 Pixel (0, 0) is the centre of a pixel; K's skew counts for a fisheye (K[0, 1] = alpha fx) and an
 omnidirectional camera, as in OpenCV's functions, and `projectPoints` has none for a pinhole.
+
+Written are K1 D1 K2 D2 R T, model_1 model_2, imageSize_1 imageSize_2 and, of an omnidirectional camera,
+xi_1 xi_2.
 """
 
 from __future__ import annotations
 
-import os
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import islice
@@ -33,8 +35,7 @@ from rectbench.cameras import Camera
 from rectbench.cameras.arrays import FloatArray
 from rectbench.errors import InvalidInput
 from rectbench.rigs.documents import Section, blaming, checked_size, shown
-from rectbench.rigs.formats import Given, RigFormat, assembled, rigid
-from rectbench.rigs.native import replace_file
+from rectbench.rigs.formats import Given, RigFormat, Writing, assembled, layout_of, rigid
 from rectbench.rigs.rig import Rig
 from rectbench.rigs.sources import Source
 
@@ -55,9 +56,17 @@ SIZE = ("imageSize", "image_size", "ImageSize", "cameraResolution")
 SIDES = ("image_width", "image_height")
 MODEL = ("model", "camera_model")
 
+FOCAL = ("fx", "fy", "cx", "cy")
 CAMERA_MODELS = {"pinhole": "pinhole", "fisheye": "kannala-brandt", "omnidir": "unified"}
 PINHOLE_ORDER = ("k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6", "s1", "s2", "s3", "s4")
 ORDERS = {"pinhole": PINHOLE_ORDER, "fisheye": ("k1", "k2", "k3", "k4"), "omnidir": ("k1", "k2", "p1", "p2")}
+LAYOUTS = {
+    lens: (model, (*FOCAL, *ORDERS[lens], *(() if lens == "pinhole" else ("skew", "xi"))))
+    for lens, model in CAMERA_MODELS.items()
+}
+"""What OpenCV's three modules have places for."""
+
+SUFFIXES = (".yml", ".yaml", ".xml", ".json")
 PINHOLE_COUNTS = (4, 5, 8, 12, 14)
 """Lengths of OpenCV's distortion vector; the last two of 14 tilt the sensor."""
 
@@ -216,36 +225,45 @@ def _recognises(source: Source) -> bool:
     return bool(source.keys & (numbered | {*ROTATION, *TRANSLATION})) or (has_header and bool(source.keys))
 
 
-def write_opencv(rig: Rig, path: str | os.PathLike[str]) -> None:
-    """Write `rig` as an OpenCV YAML that this module reads and `cv2.FileStorage` opens.
-
-    Keys are K1 D1 K2 D2 R T, model_1, model_2 (pinhole, fisheye, omnidir), imageSize_1, imageSize_2 and, for
-    an omnidirectional camera, xi_1, xi_2. Raises InvalidInput for a lens that OpenCV has no functions for.
-    """
-    storage = cv2.FileStorage(".yml", cv2.FILE_STORAGE_WRITE | cv2.FILE_STORAGE_MEMORY)
-    for number, camera in ((1, rig.left), (2, rig.right)):
-        _write_camera(storage, number, camera)
+def _texts(rig: Rig, name: str) -> dict[str, str]:
+    """The rig as `cv2.FileStorage` writes it in the language that the name's suffix calls for."""
+    suffix = Path(name).suffix.lower()
+    if suffix not in SUFFIXES:
+        raise InvalidInput(f"{name}: has no suffix of OpenCV's; expected {', '.join(SUFFIXES)}")
+    storage = cv2.FileStorage(suffix, cv2.FILE_STORAGE_WRITE | cv2.FILE_STORAGE_MEMORY)
+    for number, side, camera in ((1, "left", rig.left), (2, "right", rig.right)):
+        lens, equal = layout_of(camera, LAYOUTS, "opencv", side)
+        _write_camera(storage, number, lens, equal)
     storage.write("R", rig.R_right_left)
     storage.write("T", rig.t_right_left.reshape(3, 1))
-    replace_file(Path(path), storage.releaseAndGetString())
+    return {name: storage.releaseAndGetString()}
 
 
-def _write_camera(storage: Any, number: int, camera: Camera) -> None:
-    lens = next((lens for lens, model in CAMERA_MODELS.items() if model == camera.model), None)
-    if lens is None:
-        raise InvalidInput(
-            f"a {camera.model} camera has no OpenCV functions; expected {', '.join(CAMERA_MODELS.values())}"
-        )
-    p = camera.params
-    K = [[p["fx"], p.get("skew", 0.0), p["cx"]], [0, p["fy"], p["cy"]], [0, 0, 1]]
+def _write_camera(storage: Any, number: int, lens: str, camera: Camera) -> None:
     storage.write(f"model_{number}", lens)
     storage.write(f"imageSize_{number}", np.array([camera.size]))
-    storage.write(f"K{number}", np.array(K, dtype=np.float64))
-    storage.write(f"D{number}", np.array([[p[name] for name in ORDERS[lens]]]))
+    storage.write(f"K{number}", matrix_of(camera))
+    storage.write(f"D{number}", np.array([distortion_of(camera, lens)]))
     if lens == "omnidir":
-        storage.write(f"xi_{number}", p["xi"])
+        storage.write(f"xi_{number}", camera.params["xi"])
+
+
+def matrix_of(camera: Camera) -> FloatArray:
+    """The camera matrix [3, 3], with the skew where the camera has one."""
+    p = camera.params
+    return np.array([[p["fx"], p.get("skew", 0.0), p["cx"]], [0.0, p["fy"], p["cy"]], [0.0, 0.0, 1.0]])
+
+
+def distortion_of(camera: Camera, lens: str) -> list[float]:
+    """The coefficients in OpenCV's order, of a pinhole as many of 5, 8 or 12 as it takes."""
+    coefficients = [camera.params[name] for name in ORDERS[lens]]
+    return coefficients[: next(n for n in (5, 8, 12) if not any(coefficients[n:]))]
 
 
 FORMAT = RigFormat(
-    "opencv", "OpenCV stereo, fisheye and omnidir calibration (YAML, XML, JSON)", _recognises, _read
+    "opencv",
+    "OpenCV stereo, fisheye and omnidir calibration (YAML, XML, JSON)",
+    _recognises,
+    _read,
+    write=Writing(_texts),
 )

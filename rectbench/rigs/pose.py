@@ -11,7 +11,8 @@ import cv2
 from rectbench.cameras.arrays import FloatArray
 from rectbench.rigs.documents import Section, blaming
 from rectbench.rigs.formats import rigid
-from rectbench.rigs.rig import checked_rotation
+from rectbench.rigs.native import dump
+from rectbench.rigs.rig import Rig, checked_rotation
 from rectbench.rigs.sources import Source
 
 ROTATION = ("R_right_left", "R", "rvec", "om", "Om", "rotation_vector")
@@ -37,3 +38,8 @@ def read_rotation(file: Section, key: str) -> FloatArray:
     R = numbers.reshape(3, 3) if numbers.size == 9 else cv2.Rodrigues(numbers)[0]
     with blaming(file.at(key)):
         return checked_rotation(R, "R_right_left")
+
+
+def pose_text(rig: Rig) -> str:
+    """The file of a rig's pose, by the project's own keys."""
+    return dump({"R_right_left": rig.R_right_left.tolist(), "t_right_left": rig.t_right_left.tolist()})

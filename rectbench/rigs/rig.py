@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -96,11 +97,14 @@ class Rig:
         left, right = (replace(camera, max_angle_deg=max_angle_deg) for camera in (self.left, self.right))
         return replace(self, left=left, right=right)
 
-    def save(self, path: str | os.PathLike[str]) -> None:
-        """Write the rig as the project's own YAML, see `rectbench.rigs.native`."""
-        from rectbench.rigs.native import write_rig
+    def save(self, path: str | os.PathLike[str], format: str = "native") -> tuple[Path, ...]:
+        """Write the rig's calibration as the project's own YAML, or in another format.
 
-        write_rig(self, path)
+        Returns the files; `load_rig(path)` reads the rig back. See `rectbench.rigs.saving.save_rig`.
+        """
+        from rectbench.rigs.saving import save_rig
+
+        return save_rig(self, path, format)
 
 
 @np.errstate(over="ignore", invalid="ignore")

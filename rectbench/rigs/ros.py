@@ -14,8 +14,6 @@ equidistant and fisheye OpenCV's fisheye.
 
 from __future__ import annotations
 
-import os
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -24,9 +22,17 @@ from rectbench.cameras import Camera
 from rectbench.cameras.arrays import FloatArray
 from rectbench.errors import InvalidInput
 from rectbench.rigs.documents import Section, blaming
-from rectbench.rigs.formats import CameraFormat, Given, View, rigid
-from rectbench.rigs.native import dump, replace_file
-from rectbench.rigs.opencv import ORDERS, PINHOLE_COUNTS, camera_matrix, lens_parameters
+from rectbench.rigs.formats import CameraFormat, Given, View, Writing, layout_of, rigid
+from rectbench.rigs.native import dump
+from rectbench.rigs.opencv import (
+    FOCAL,
+    ORDERS,
+    PINHOLE_COUNTS,
+    camera_matrix,
+    distortion_of,
+    lens_parameters,
+    matrix_of,
+)
 from rectbench.rigs.rig import Rig, checked_rotation
 from rectbench.rigs.sources import Source
 
@@ -44,6 +50,12 @@ MODELS = {
     "fisheye": "fisheye",
     "kannala_brandt": "fisheye",
 }
+LAYOUTS = {
+    "plumb_bob": ("pinhole", (*FOCAL, *ORDERS["pinhole"][:5])),
+    "rational_polynomial": ("pinhole", (*FOCAL, *ORDERS["pinhole"][:8])),
+    "equidistant": ("kannala-brandt", (*FOCAL, *ORDERS["fisheye"])),
+}
+"""The models that sensor_msgs/distortion_models names and image_geometry takes, which are written."""
 
 
 def read_view(source: Source, given: Given) -> View:
@@ -94,22 +106,24 @@ def _recognises(source: Source) -> bool:
     return is_info or is_message or {"distortion_model", "camera_matrix"} <= keys
 
 
-def write_ros(rig: Rig, left: str | os.PathLike[str], right: str | os.PathLike[str]) -> None:
-    """Write `rig` as two camera_info files, with a rectification R, P that holds its pose.
+def _texts(rig: Rig, name: str) -> dict[str, str]:
+    """The two camera_info files, with a rectification R, P that holds the pose.
 
     The rectified frame has x along the baseline and z as near to the left camera's as that leaves; P's focal
-    length is the smaller of the left camera's two. Raises InvalidInput for a lens that ROS has no name for.
+    length is the smaller of the left camera's two.
     """
+    layouts = [
+        layout_of(camera, LAYOUTS, "ros", side) for side, camera in (("left", rig.left), ("right", rig.right))
+    ]
     R_rect_left = _along_baseline(rig.centre_right_in_left)
-    focal = min(rig.left.params.get("fx", 1.0), rig.left.params.get("fy", 1.0))
-    K = np.array([[focal, 0, (rig.left.width - 1) / 2], [0, focal, (rig.left.height - 1) / 2], [0, 0, 1]])
-    sides = (
-        (left, rig.left, R_rect_left, 0.0),
-        (right, rig.right, R_rect_left @ rig.R_right_left.T, rig.baseline_m),
-    )
-    for path, camera, R, baseline in sides:
-        P = np.c_[K, [-focal * baseline, 0, 0]]
-        replace_file(Path(path), dump(_info(camera, R, P, Path(path).stem)))
+    left = layouts[0][1]
+    focal = min(left.params["fx"], left.params["fy"])
+    K = np.array([[focal, 0, (left.width - 1) / 2], [0, focal, (left.height - 1) / 2], [0, 0, 1]])
+    places = (("left", R_rect_left, 0.0), ("right", R_rect_left @ rig.R_right_left.T, rig.baseline_m))
+    return {
+        f"{side}.yaml": dump(_info(side, model, camera, R, np.c_[K, [-focal * baseline, 0, 0]]))
+        for (side, R, baseline), (model, camera) in zip(places, layouts, strict=True)
+    }
 
 
 def _along_baseline(centre: FloatArray) -> FloatArray:
@@ -120,25 +134,14 @@ def _along_baseline(centre: FloatArray) -> FloatArray:
     return np.stack([x, np.cross(z, x), z])
 
 
-def _info(camera: Camera, R: FloatArray, P: FloatArray, name: str) -> dict[str, Any]:
-    lens = {"pinhole": "pinhole", "kannala-brandt": "fisheye"}.get(camera.model)
-    p = camera.params
-    if lens is None or p.get("skew", 0.0) != 0:
-        raise InvalidInput(
-            f"a {camera.model} camera, if not its skew, has no ROS distortion model; expected pinhole or "
-            "kannala-brandt without skew"
-        )
-    used = [p[key] for key in ORDERS[lens]]
-    count = 4 if lens == "fisheye" else next(n for n in (5, 8, 12) if not any(used[n:]))
-    model = {4: "equidistant", 5: "plumb_bob", 8: "rational_polynomial", 12: "thin_prism_model"}[count]
-    K = np.array([[p["fx"], 0, p["cx"]], [0, p["fy"], p["cy"]], [0, 0, 1]])
+def _info(side: str, model: str, camera: Camera, R: FloatArray, P: FloatArray) -> dict[str, Any]:
     return {
         "image_width": camera.width,
         "image_height": camera.height,
-        "camera_name": name,
-        "camera_matrix": _matrix(K),
+        "camera_name": side,
+        "camera_matrix": _matrix(matrix_of(camera)),
         "distortion_model": model,
-        "distortion_coefficients": _matrix(np.array([used[:count]])),
+        "distortion_coefficients": _matrix(np.array([distortion_of(camera, MODELS[model])])),
         "rectification_matrix": _matrix(R),
         "projection_matrix": _matrix(P),
     }
@@ -148,4 +151,6 @@ def _matrix(matrix: FloatArray) -> dict[str, Any]:
     return {"rows": matrix.shape[0], "cols": matrix.shape[1], "data": matrix.ravel().tolist()}
 
 
-FORMAT = CameraFormat("ros", "ROS camera_info (YAML; two files)", _recognises, read_view)
+FORMAT = CameraFormat(
+    "ros", "ROS camera_info (YAML; two files)", _recognises, read_view, write=Writing(_texts, in_folder=True)
+)

@@ -2,7 +2,8 @@
 
 `body_T_cam0` takes points of camera 0 to the body (IMU), in metres, as the VINS-Fusion maintainers
 state it. `cam0_calib` and `cam1_calib` name the CamOdoCal files of the cameras, beside the configuration.
-VINS-Mono's own configuration holds one camera and is no rig.
+VINS-Mono's own configuration holds one camera and is no rig. Written is what a configuration says of its
+cameras, the left one standing for the body; the topics and all about the IMU are left to its user.
 """
 
 from __future__ import annotations
@@ -10,9 +11,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+import cv2
+import numpy as np
+
 from rectbench.errors import InvalidInput
 from rectbench.rigs import camodocal
-from rectbench.rigs.formats import Given, RigFormat, placed, rig_of_views
+from rectbench.rigs.formats import Given, RigFormat, Writing, inverse, placed, pose_matrix, rig_of_views
 from rectbench.rigs.rig import Rig
 from rectbench.rigs.sources import Source
 
@@ -44,4 +48,26 @@ def _recognises(source: Source) -> bool:
     return bool({"cam0_calib", "body_T_cam0"} & source.keys)
 
 
-FORMAT = RigFormat("vins", "VINS-Fusion configuration with its cameras' files (YAML)", _recognises, _read)
+def _texts(rig: Rig, name: str) -> dict[str, str]:
+    """The part of a configuration that is about the cameras, the left one in the body's place."""
+    storage = cv2.FileStorage(".yml", cv2.FILE_STORAGE_WRITE | cv2.FILE_STORAGE_MEMORY)
+    storage.write("num_of_cam", 2)
+    for place, side in enumerate(("left", "right")):
+        storage.write(f"cam{place}_calib", f"{side}.yaml")
+    storage.write("image_width", rig.left.width)
+    storage.write("image_height", rig.left.height)
+    storage.write("body_T_cam0", np.eye(4))
+    storage.write("body_T_cam1", inverse(pose_matrix(rig)))
+    files = {"config.yaml": storage.releaseAndGetString()}
+    for side, camera in (("left", rig.left), ("right", rig.right)):
+        files[f"{side}.yaml"] = camodocal.camera_text(camera, side, "vins")
+    return files
+
+
+FORMAT = RigFormat(
+    "vins",
+    "VINS-Fusion configuration with its cameras' files (YAML)",
+    _recognises,
+    _read,
+    write=Writing(_texts, in_folder=True),
+)

@@ -11,17 +11,11 @@ import pytest
 import yaml
 
 from rectbench import Camera, InvalidInput, Rig, load_rig
-from rectbench.rigs.kalibr import write_kalibr
-from rectbench.rigs.opencv import write_opencv
-from rectbench.rigs.ros import write_ros
 from tests.rigs.calibration_files import D1, D2, K1, K2, POSE, R_RIGHT_LEFT, T_RIGHT_LEFT, opencv_file
 from tests.rigs.examples import (
     EXAMPLES,
-    FISHEYES,
     PINHOLES,
-    RATIONALS,
     SIZE,
-    UNIFIEDS,
     matrix_block,
     ros_text,
 )
@@ -281,40 +275,6 @@ def test_any_two_cameras_of_a_chain_make_a_rig(tmp_path: Path) -> None:
 def test_a_choice_of_cameras_is_two_names(cameras: object) -> None:
     with pytest.raises(InvalidInput, match="expected two names"):
         load_rig("t265", cameras=cameras)
-
-
-@pytest.mark.parametrize("name", ["kalibr", "openvins", "basalt", "euroc"])
-def test_what_kalibr_s_writer_writes_is_the_same_rig(tmp_path: Path, name: str) -> None:
-    write_kalibr(EXAMPLES[name].rig, tmp_path / "camchain.yaml")
-    assert_same_rig(load_rig(tmp_path / "camchain.yaml"), EXAMPLES[name].rig)
-
-
-@pytest.mark.parametrize(
-    "rig", [FISHEYES, UNIFIEDS, PINHOLES, RATIONALS, Rig(FISHEYES.left, PINHOLES.right, *POSE.values())]
-)
-def test_what_the_opencv_writer_writes_is_the_same_rig(tmp_path: Path, rig: Rig) -> None:
-    write_opencv(rig, tmp_path / "rig.yml")
-    assert_same_rig(load_rig(tmp_path / "rig.yml"), rig)
-    storage = cv2.FileStorage(str(tmp_path / "rig.yml"), cv2.FILE_STORAGE_READ)
-    np.testing.assert_array_equal(storage.getNode("R").mat(), rig.R_right_left)
-
-
-@pytest.mark.parametrize("rig", [FISHEYES, PINHOLES, RATIONALS])
-def test_what_the_ros_writer_writes_is_the_same_rig(tmp_path: Path, rig: Rig) -> None:
-    paths = [tmp_path / "left.yaml", tmp_path / "right.yaml"]
-    write_ros(rig, *paths)
-    assert_same_rig(load_rig(paths), rig)
-
-
-@pytest.mark.parametrize(
-    "write",
-    [write_opencv, write_kalibr, lambda rig, path: write_ros(rig, path, path.with_suffix(".right"))],
-    ids=["opencv", "kalibr", "ros"],
-)
-def test_a_lens_that_a_format_lacks_is_refused(tmp_path: Path, write) -> None:
-    with pytest.raises(InvalidInput, match="expected"):
-        write(EXAMPLES["ocamcalib"].rig, tmp_path / "rig")
-    assert not (tmp_path / "rig").exists()
 
 
 def test_basalt_s_radtan8_projects_as_opencv_does(tmp_path: Path) -> None:
