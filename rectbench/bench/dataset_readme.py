@@ -84,10 +84,9 @@ With rectbench, a point of the rectified pair:
 
 ```python
 import rectbench as rb
-from rectbench.warps.description import load_rectification
 
 rig = rb.load_rig(f"calibration/{name}/rig.yaml")
-rect = load_rectification(f"rectified/description/{name}/rectified.yaml")
+rect = rb.load_rectification(f"rectified/description/{name}/rectified.yaml")
 point_left = rect.triangulate([100.0, 50.0], disparity[50, 100])  # metres, in the left camera's frame
 ```
 """
