@@ -4,7 +4,7 @@
 |---|---|
 | equidistant | kannala-brandt without coefficients |
 | thin-prism-fisheye, fisheye624 with radial terms of four coefficients alone | kannala-brandt |
-| stereographic | division with k = -1/4, unified with ξ = 1 and half of it as α |
+| stereographic, both ways | division with k = -1/4, unified with ξ = 1 and twice the focal length |
 | division with k = 0 or -1/4 | pinhole, stereographic |
 | unified without distortion and skew, ξ ≥ 0 | extended-unified with α = ξ/(1+ξ), β = 1 |
 | unified with ξ = 0, without skew | pinhole |

@@ -7,8 +7,6 @@ from typing import Annotated
 
 import typer
 
-from rectbench.errors import InvalidInput
-
 WRONG_USAGE, INCOMPLETE = 2, 3
 
 app = typer.Typer(
@@ -53,14 +51,3 @@ def split_names(names: list[str] | None) -> list[str] | None:
     if names is None:
         return None
     return [name.strip() for text in names for name in text.split(",") if name.strip()]
-
-
-def whole_numbers(name: str, texts: list[str] | None) -> list[int] | None:
-    """Whole numbers of repeated options and of comma-separated lists; an error calls them `name`."""
-    words = split_names(texts)
-    try:
-        return None if words is None else [int(word) for word in words]
-    except ValueError:
-        raise InvalidInput(
-            f"{name} are {','.join(words or [])}; expected whole numbers such as 0,1,2"
-        ) from None

@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from rectbench.cli.app import MaxAngle, Unit, split_names
+from rectbench.cli.number_texts import image_size
 
 
 def convert(
@@ -28,13 +29,17 @@ def convert(
         str | None,
         typer.Option(metavar="LEFT,RIGHT", help="Two cameras of a file that holds more, by its names."),
     ] = None,
+    size: Annotated[
+        str | None, typer.Option(metavar="WxH", help="The images' size, where the calibration does not tell.")
+    ] = None,
     max_angle_deg: MaxAngle = None,
     unit: Unit = None,
 ) -> None:
     """Write a calibration in another format, exactly, or tell why that format cannot hold it."""
     from rectbench.rigs import load_rig
 
-    rig = load_rig(calibration, unit=unit, cameras=split_names(None if cameras is None else [cameras]))
+    pair = split_names(None if cameras is None else [cameras])
+    rig = load_rig(calibration, image_size(size), unit, pair)
     rig = rig if max_angle_deg is None else rig.within(max_angle_deg)
     for file in rig.save(out, to):
         print(file)

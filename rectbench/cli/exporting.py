@@ -7,7 +7,8 @@ from typing import Annotated
 
 import typer
 
-from rectbench.cli.app import Method, MethodOptions, whole_numbers
+from rectbench.cli.app import Method, MethodOptions
+from rectbench.cli.number_texts import whole_numbers
 
 
 def export(

@@ -8,6 +8,7 @@ from typing import Annotated, Literal
 import typer
 
 from rectbench.cli.app import INCOMPLETE, MaxAngle, MethodOptions, MethodSeed, Unit, split_names
+from rectbench.cli.number_texts import image_size, numbers_in, two_numbers
 from rectbench.errors import InvalidInput
 
 LeftImages = Annotated[str, typer.Argument(metavar="LEFT", help="The left image, folder or pattern.")]
@@ -96,9 +97,9 @@ def rectify(
         options=read_method_options(option),
         framing=Framing(
             crop=_crop(crop),
-            fov_deg=_two(fov, "fov", "two angles such as 100x80"),
+            fov_deg=two_numbers(fov, "fov", "two angles such as 100x80"),
             coverage=coverage,
-            size=_size(size),
+            size=image_size(size),
             focal_px=_focal(focal),
             pixels=pixels,
         ),
@@ -117,28 +118,10 @@ def rectify(
 def _crop(text: str | None) -> Literal["valid"] | tuple[float, float, float, float] | None:
     if text is None or text == "valid":
         return text  # type: ignore[return-value]  # mypy does not narrow a str to a literal
-    numbers = _numbers(text.split(","))
+    numbers = numbers_in(text.split(","))
     if numbers is None or len(numbers) != 4:
         raise InvalidInput(f"crop is {text}; expected valid, or x,y,width,height in pixels")
     return numbers[0], numbers[1], numbers[2], numbers[3]
-
-
-def _two(text: str | None, name: str, expected: str) -> tuple[float, float] | None:
-    if text is None:
-        return None
-    numbers = _numbers(text.lower().replace("×", "x").split("x"))
-    if numbers is None or len(numbers) != 2:
-        raise InvalidInput(f"{name} is {text}; expected {expected}")
-    return numbers[0], numbers[1]
-
-
-def _size(text: str | None) -> tuple[int, int] | None:
-    sides = _two(text, "size", "width and height such as 1280x800")
-    if sides is None:
-        return None
-    if any(side != round(side) for side in sides):
-        raise InvalidInput(f"size is {text}; expected whole pixels")
-    return round(sides[0]), round(sides[1])
 
 
 def _focal(text: str | None) -> float | Literal["source"] | None:
@@ -146,14 +129,7 @@ def _focal(text: str | None) -> float | Literal["source"] | None:
         return None
     if text == "source":
         return "source"
-    numbers = _numbers([text])
+    numbers = numbers_in([text])
     if numbers is None:
         raise InvalidInput(f"focal is {text}; expected a number of pixels, or source")
     return numbers[0]
-
-
-def _numbers(words: list[str]) -> list[float] | None:
-    try:
-        return [float(word) for word in words]
-    except ValueError:
-        return None

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from rectbench.cli.app import INCOMPLETE, OptionTexts, RunFolder, split_names, whole_numbers
+from rectbench.cli.app import INCOMPLETE, OptionTexts, RunFolder, split_names
+from rectbench.cli.number_texts import whole_numbers
 from rectbench.errors import UnknownName
 
 if TYPE_CHECKING:

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from rectbench import Camera, InvalidInput, RectbenchError, Rig, RigCovariance, load_covariance, load_rig
-from rectbench.rigs.kalibr import write_kalibr
 from tests.rigs.calibration_files import R_RIGHT_LEFT, T_RIGHT_LEFT
 from tests.rigs.mutations import damaged
 
@@ -115,7 +114,7 @@ def test_kalibr_s_deviations_go_to_lenses_and_pose(tmp_path: Path) -> None:
 
 
 def test_kalibr_s_results_fit_the_camchain_beside_them(tmp_path: Path) -> None:
-    write_kalibr(PINHOLES, tmp_path / "camchain.yaml")
+    PINHOLES.save(tmp_path / "camchain.yaml", "kalibr")
     found = read(tmp_path, kalibr_results(PINHOLES), rig=load_rig(tmp_path / "camchain.yaml"))
     assert len(found.parameters) == 22
 

@@ -21,7 +21,7 @@ from rectbench.rigs import calibration_formats, written_formats
 from tests.cameras.random_cameras import FOCAL, MODELS, any_camera, cameras
 from tests.conftest import Shell
 from tests.rigs.calibration_files import R_RIGHT_LEFT, T_RIGHT_LEFT
-from tests.rigs.examples import AFFINE1, FISHEYES, FOCAL1, POLY1, RATIONALS, UNIFIEDS, ocam_camera
+from tests.rigs.examples import AFFINE1, EXAMPLES, FISHEYES, FOCAL1, POLY1, RATIONALS, UNIFIEDS, ocam_camera
 
 FORMATS = tuple(written_formats())
 RAYS = np.random.default_rng(3).normal(size=(400, 3)) * [1, 1, 0.7]
@@ -363,6 +363,19 @@ def test_the_command_line_picks_cameras_and_limits_their_view(tmp_path: Path, sh
     code, _, _ = shell("convert", tmp_path / "chain.yaml", "-o", tmp_path / "out.yaml", *options)
     assert code == 0
     assert load_rig(tmp_path / "out.yaml").left == FISHEYES.within(80).right
+
+
+def test_the_command_line_takes_the_size_and_unit_that_a_file_lacks(tmp_path: Path, shell: Shell) -> None:
+    example = EXAMPLES["opencv-samples"]
+    for name, text in example.files.items():
+        (tmp_path / name).write_text(text)
+    files = [tmp_path / name for name in example.files]
+    code, _, err = shell("convert", *files, "-o", tmp_path / "out.yaml")
+    assert code == 2
+    assert "image_width is missing" in err
+    code, *_ = shell("convert", *files, "-o", tmp_path / "out.yaml", "--size", "848x800", "--unit", "mm")
+    assert code == 0
+    assert_same_pose(load_rig(tmp_path / "out.yaml"), example.rig)
 
 
 def test_the_command_line_says_what_cannot_be_written(tmp_path: Path, shell: Shell) -> None:
