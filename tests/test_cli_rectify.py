@@ -247,7 +247,7 @@ def test_images_of_another_rig_are_told_by_their_rows(shell: Shell) -> None:
         ("--rig rig.yaml -m abrahm", "unknown method 'abrahm'; did you mean abraham"),
         ("--rig rig.yaml --option law=flat", "unknown option of local-homography 'law'"),
         ("--rig rig.yaml -m best --option law=flat", "options are given for method best"),
-        ("--rig rig.yaml -m best --crop valid", "expected a coverage or fov_deg"),
+        ("--rig rig.yaml -m best --crop valid", "not in the crop valid; expected a coverage or fov_deg"),
         ("--rig rig.yaml --crop 1,2,3", "crop is 1,2,3; expected valid, or x,y,width,height"),
         ("--rig rig.yaml --crop valid --coverage 0.5", "crop and coverage both say what is shown"),
         ("--rig rig.yaml --coverage 95", "coverage is 95.0; expected a share"),

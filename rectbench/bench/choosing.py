@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import pandas as pd
 
@@ -101,8 +101,8 @@ def best_method(
     Parameters
     ----------
     rig : the calibrated rig.
-    framing : what each method is made to show; a coverage or a field of view. 95 % of the source pixels
-        where left out.
+    framing : what each method is made to show, a coverage or a field of view, and how large. 95 % of the
+        source pixels where it does not say what.
     images, matches : what methods may work from beside the rig, see `rectify`.
     trusted : correspondences by which rows are judged: of matches, or of the corners of a board. Without
         them all rows count as good.
@@ -112,9 +112,14 @@ def best_method(
     Raises InvalidInput for a framing in which methods cannot be compared, Unsupported with the reasons
     where no method applies.
     """
-    chosen = framing or Framing(coverage=COVERAGE)
-    if chosen.coverage is None and chosen.fov_deg is None:
-        raise InvalidInput("methods are compared where all show the same; expected a coverage or fov_deg")
+    chosen = framing or Framing()
+    if chosen.crop is not None:
+        raise InvalidInput(
+            f"methods are compared where all show the same, not in the crop {chosen.crop}; expected a coverage "
+            "or fov_deg"
+        )
+    if chosen.fov_deg is None and chosen.coverage is None:
+        chosen = replace(chosen, coverage=COVERAGE)
     problem = pose_problem(rig, images=images, matches=matches, seed=seed)
     found = registry("methods")
     plugins = found.plugins() if methods is None else [found.get(name) for name in methods]

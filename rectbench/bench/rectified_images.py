@@ -177,19 +177,25 @@ def rectify_images(
 
     measured = {round(place) for place in np.linspace(0, len(pairs) - 1, wanted.measured_pairs)}
     results: list[PairResult] = []
+
+    def rectified(place: int, pair: ImagePair) -> PairResult:
+        images = first if pair is readable else _images_of(pair, rig)
+        stem = f"{{side}}/{pair.name}" if len(pairs) > 1 else "{side}"
+        files.extend(_written(_image_files(images, resamplers, stem), out))
+        if pair is readable:
+            return trusted.measured(pair, rect)
+        return (
+            _Trusted.of(images, rig, wanted.seed).measured(pair, rect)
+            if place in measured
+            else PairResult(pair)
+        )
+
     with (progress or Progress()).stage("pairs", len(pairs)) as advance:
         for place, pair in enumerate(pairs):
             try:
-                images = first if pair is readable else _images_of(pair, rig)
+                results.append(rectified(place, pair))
             except InvalidInput as error:
                 results.append(PairResult(pair, reason=str(error)))
-            else:
-                stem = f"{{side}}/{pair.name}" if len(pairs) > 1 else "{side}"
-                files += _written(_image_files(images, resamplers, stem), out)
-                known = trusted if pair is readable else None
-                if place in measured:
-                    known = known or _Trusted.of(images, rig, wanted.seed)
-                results.append(known.measured(pair, rect) if known else PairResult(pair))
             advance()
     made = RectifiedImages(method, rect, costs, own_costs, choice, tuple(results), tuple(files))
     return replace(made, files=(*files, *_written(_summary_files(made), out)))
@@ -229,10 +235,9 @@ def _rectification(
 ) -> tuple[Choice | None, Rectification | None, Rectification]:
     """How it was chosen, if it was; the method's own frame, if it is another; and the one that is wanted."""
     if wanted.method == BEST:
-        framing = None if wanted.framing.is_own else wanted.framing
         choice = best_method(
             rig,
-            framing=framing,
+            framing=wanted.framing,
             images=images,
             matches=matches,
             trusted=trusted.best,
