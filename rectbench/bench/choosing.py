@@ -115,8 +115,8 @@ def best_method(
     chosen = framing or Framing()
     if chosen.crop is not None:
         raise InvalidInput(
-            f"methods are compared where all show the same, not in the crop {chosen.crop}; expected a coverage "
-            "or fov_deg"
+            f"methods are compared where all show the same, not in the crop {chosen.crop}; expected a "
+            "coverage or fov_deg"
         )
     if chosen.fov_deg is None and chosen.coverage is None:
         chosen = replace(chosen, coverage=COVERAGE)
