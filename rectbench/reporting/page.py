@@ -34,6 +34,7 @@ TOPICS = (
     ("reconstruction", "Reconstruction", ("depth",), ("clouds",)),
     ("time", "Time", ("time",), ("timing",)),
     ("pairs", "Every pair", ("pair",), ()),
+    ("photographs", "Photographs", ("photographs", "left-out"), ()),
 )
 """What a part of the page is divided into: name, title, kinds of tables, kinds of figures."""
 

@@ -16,6 +16,7 @@ from rectbench.reporting.columns import (
     ALL_PIXELS_KEYS,
     DISTORTION_KEYS,
     MAIN_KEYS,
+    PHOTOGRAPH_KEYS,
     RANKING_KEY,
     Column,
     column,
@@ -70,7 +71,7 @@ def is_ranked(run: Run) -> bool:
 
 def _main_table(run: Run, pose: str) -> Table:
     results = run.select(pose=pose)
-    keys = [key for key in MAIN_KEYS if key in run.metrics]
+    keys = [key for key in (PHOTOGRAPH_KEYS if run.is_of_photographs else MAIN_KEYS) if key in run.metrics]
     methods = [m for m in run.methods if any(r.method == m for r in results)]
     summaries = ranked(summarise(m, [r for r in results if r.method == m], keys) for m in methods)
     failing = any(not s.complete for s in summaries)
