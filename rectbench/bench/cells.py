@@ -82,7 +82,7 @@ def cell_inputs(task: CellTask) -> Inputs:
 
 
 def uses_images(task: CellTask) -> bool:
-    """Whether the row of a cell hangs on its images; with photographs it always does, on their sizes at least."""
+    """Whether the row of a cell hangs on its images, as that of photographs always does."""
     needs = registry("methods").get(task.method_source).value.needs
     asked = "images" in needs or task.cell.pose == ESTIMATED or not IMAGE_METRICS.isdisjoint(task.metrics)
     return asked or isinstance(task.pair, PhotoTask)
@@ -126,7 +126,8 @@ def run_pair(pair: PairTask, store_root: Path) -> Outcome:
 def believed_rig(task: CellTask, store: Store) -> Rig:
     """What the rectifier is told: the true rig with its pose perturbed, or estimated from the images.
 
-    Of photographs it is the calibrated rig as it is, or in the pose that the images tell. Images do not tell how long a baseline is: the true length stands in an estimated rig, too.
+    Of photographs it is the calibrated rig as it is, or in the pose that the images tell. Images do not
+    tell how long a baseline is: the known length stands in an estimated rig, too.
     """
     cell, rig = task.cell, placed_rig(task.pair)
     if cell.pose == ESTIMATED:

@@ -68,7 +68,7 @@ def pose_columns(estimate: PoseEstimate, truth: Rig) -> dict[str, float]:
 
 
 def calibration_columns(estimate: PoseEstimate, calibrated: Rig) -> dict[str, float]:
-    """The same of photographs: how far the estimate is from the calibration, neither of which is the truth."""
+    """The same of photographs: how far the estimate is from the calibration; neither is the truth."""
     columns = pose_columns(estimate, calibrated)
     return {name.replace("_error_deg", "_difference_deg"): value for name, value in columns.items()}
 

@@ -1,4 +1,4 @@
-"""How far from its axis a fisheye lens shows anything: by a mask image, or by the black rim of photographs."""
+"""How far from its axis a fisheye lens shows anything: by a mask image, or by the black rim of images."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def angle_of_mask_deg(camera: Camera, mask: Grey) -> float | None:
 
 
 def angle_of_rim_deg(camera: Camera, images: Sequence[Grey]) -> float | None:
-    """Angle from the axis, degrees, beyond which images [H, W] of one camera are dark; None where they are not.
+    """Angle from the axis, degrees, beyond which images [H, W] of a camera are dark; None for no black rim.
 
     Dark are the rings about the axis from there to the corners, none of them less than 5 degrees, and all
     images count at once, so that a dark scene is no rim while another is light.

@@ -75,7 +75,8 @@ class Report(BaseModel):
 
     A file in `reports/` states one at its top level. Names may also be paths of plugin and rig
     files. In the place of one grid a report may have `groups`, each with its own pairs and methods;
-    or it takes `photographs`, and its pairs are those of a folder that each run names. Raises pydantic's ValidationError for a field that cannot be used as given.
+    or it takes `photographs`, and its pairs are those of a folder that each run names. Raises
+    pydantic's ValidationError for a field that cannot be used as given.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")

@@ -1,4 +1,4 @@
-"""Two views of what is reconstructed through each method's rectification, beside the truth where it is known."""
+"""Two views of what is reconstructed through each method's rectification, and of the truth if it is known."""
 
 from __future__ import annotations
 

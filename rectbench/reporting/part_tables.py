@@ -93,8 +93,8 @@ def photographs_row_tables(run: Run) -> Iterator[Table]:
             kind="rows",
             name=named(run, "row-error", pose),
             title=titled(run, f"Row error under the {pose} pose"),
-            caption="Of the corners of a calibration board, the measure to trust, where both images show one; "
-            "and of SIFT matches that agree with one another on the pose in the images, whatever the "
+            caption="Of the corners of a calibration board, the measure to trust, where both images show "
+            "one; and of SIFT matches that agree with one another on the pose in the images, whatever the "
             "calibration says.",
         )
 

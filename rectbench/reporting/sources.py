@@ -43,7 +43,7 @@ class Cloud(Protocol):
 
 @dataclass(frozen=True)
 class Sources:
-    """How to get, for a cell, its images and what is known of them, its rectification, and distortion at pixels.
+    """How to get, for a cell, its images and what is known of them, its rectification, its distortion.
 
     Parameters
     ----------
