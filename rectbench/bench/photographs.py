@@ -14,7 +14,7 @@ from rectbench.bench.data_manifest import MANIFEST, Manifest, StatedRig, read_ma
 from rectbench.bench.image_circle import angle_of_mask_deg, angle_of_rim_deg
 from rectbench.bench.pairing import FilePair, LeftOut, paired_files, words_in
 from rectbench.errors import InvalidInput
-from rectbench.matching.images import Grey, grey8, read_images
+from rectbench.matching.images import Grey, grey8, read_image
 from rectbench.rigs import Rig, is_calibration, load_rig
 
 IMAGE_SUFFIXES = frozenset(
@@ -244,7 +244,7 @@ def _completed(one: Calibration, size: tuple[int, int] | None) -> Iterator[Calib
 
 
 def _size(image: Path) -> tuple[int, int] | None:
-    pixels = cv2.imread(str(image), cv2.IMREAD_UNCHANGED)
+    pixels = _read_grey(image)
     return None if pixels is None else (pixels.shape[1], pixels.shape[0])
 
 
@@ -335,7 +335,7 @@ def _fitting(pair: PhotoPair, rig: Rig) -> tuple[Grey, Grey] | None:
 
 def _read_grey(path: Path) -> Grey | None:
     try:
-        return grey8(read_images(path, path).left)
+        return grey8(read_image(path))
     except InvalidInput:
         return None
 

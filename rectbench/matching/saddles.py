@@ -29,8 +29,9 @@ def refined_saddles(image: Grey, points: FloatArray, half: int) -> FloatArray:
 def levels_at(image: Grey, pixels: FloatArray) -> FloatArray:
     """Grey levels [...] of the nearest pixels [..., 2]; NaN outside of the image."""
     height, width = image.shape
-    inside = np.isfinite(pixels).all(axis=-1)
-    inside &= (pixels >= -0.5).all(axis=-1) & (pixels < [width - 0.5, height - 0.5]).all(axis=-1)
+    with np.errstate(invalid="ignore"):
+        within = (pixels > -0.5) & (pixels < [width - 0.5, height - 0.5])
+    inside = np.asarray(within.all(axis=-1))
     column, row = np.moveaxis(np.rint(np.where(inside[..., None], pixels, 0)).astype(np.intp), -1, 0)
     levels: FloatArray = np.where(inside, image[row, column].astype(float), np.nan)
     return levels

@@ -8,12 +8,12 @@ the better one where a black square touches the corner from outside, as on Kalib
 from __future__ import annotations
 
 from functools import cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import cv2
 import numpy as np
 
-from rectbench.cameras.arrays import FloatArray
+from rectbench.cameras.arrays import BoolArray, FloatArray
 from rectbench.matching.images import Grey
 from rectbench.matching.saddles import levels_at, refined_saddles
 
@@ -37,6 +37,8 @@ STEPS = 33
 STRAYING_PX = 0.6
 """RMS distance of a side's points from their parabola, beyond which it is no side."""
 FIT_STEPS = 6
+MOSTLY = 0.5
+"""Mean trust in a side's points from which on they are a side."""
 BESIDE, LEAST_CONTRAST = 0.07, 20
 """How far out of a corner, in lengths along both sides, a black square that touches it is looked for; grey
 levels by which white is lighter."""
@@ -65,85 +67,105 @@ def tags(image: Grey) -> dict[str, dict[int, FloatArray]]:
     return {name: _refined(image, seen) for name, seen in found.items() if seen}
 
 
+class _Sides(NamedTuple):
+    """The four sides of tags [N, 4, ...], each from a first guess of its first corner to one of its last."""
+
+    starts: FloatArray
+    """[N, 4, 2]"""
+    steps: FloatArray
+    """[N, 4, 2] to the other end."""
+    outward: FloatArray
+    """[N, 4, 2], of length 1."""
+
+    @property
+    def lengths(self) -> FloatArray:
+        """[N, 4], px."""
+        length: FloatArray = np.linalg.norm(self.steps, axis=-1)
+        return length
+
+    def before(self) -> _Sides:
+        """At each place the side that ends where the one there begins."""
+        return _Sides(*(np.roll(array, 1, axis=1) for array in self))
+
+    def at(self, shares: FloatArray, bends: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Points [N, 4, 2] at shares [N, 4] of the sides, bent by parabolas [N, 4, 3]; the slopes there."""
+        a, b, c = np.moveaxis(bends, -1, 0)
+        bent = (a + shares * (b + shares * c))[..., None] * self.outward
+        slopes: FloatArray = self.steps + (b + 2 * shares * c)[..., None] * self.outward
+        return self.starts + shares[..., None] * self.steps + bent, slopes
+
+
 def _refined(image: Grey, seen: dict[int, FloatArray]) -> dict[int, FloatArray]:
     """The tags with their corners where their sides meet."""
     corners = np.stack(list(seen.values()))
-    starts, steps = corners, np.roll(corners, -1, axis=1) - corners
-    lengths = np.linalg.norm(steps, axis=-1, keepdims=True)
+    steps = np.roll(corners, -1, axis=1) - corners
     # Clockwise in an image whose rows run down: what is left of a side is outside.
-    outward = np.stack([steps[..., 1], -steps[..., 0]], axis=-1) / lengths
-    offsets = _parabolas(image, starts, steps, outward, lengths[..., 0])
-    met = _meeting(starts, steps, outward, offsets)
-    # The way out of each corner, across both of its sides.
-    out = (outward + np.roll(outward, 1, axis=1)) * np.minimum(lengths, np.roll(lengths, 1, axis=1))
-    touched = levels_at(image, met + BESIDE * out) < (levels_at(image, met - BESIDE * out) + LEAST_CONTRAST)
-    found = np.isfinite(met).all(axis=-1)
-    half = int(np.clip(TOUCHED_WINDOW * lengths.min(), *TOUCHED_WINDOWS))
-    met[touched & found] = refined_saddles(image, met[touched & found], half)
+    outward = np.stack([steps[..., 1], -steps[..., 0]], axis=-1)
+    sides = _Sides(corners, steps, outward / np.linalg.norm(steps, axis=-1, keepdims=True))
+    met = _meeting(sides, _bends(image, sides))
+    touched = _touched(image, sides, met)
+    half = int(np.clip(TOUCHED_WINDOW * sides.lengths.min(), *TOUCHED_WINDOWS))
+    met[touched] = refined_saddles(image, met[touched], half)
     return dict(zip(seen, met, strict=True))
 
 
-def _parabolas(
-    image: Grey, starts: FloatArray, steps: FloatArray, outward: FloatArray, lengths: FloatArray
-) -> FloatArray:
-    """Coefficients [N, 4, 3] by powers of the share along a side: how far outward of it the edge runs, px."""
-    reach = np.clip(ACROSS * lengths, LEAST_ACROSS, MOST_ACROSS)
+def _bends(image: Grey, sides: _Sides) -> FloatArray:
+    """How far outward of each side its edge runs, px: coefficients [N, 4, 3] by powers of the share along it.
+
+    NaN where there is no edge from black to white that a parabola follows.
+    """
+    reach = np.clip(ACROSS * sides.lengths, LEAST_ACROSS, MOST_ACROSS)
     across = reach[..., None] * np.linspace(-1, 1, STEPS)
-    places = starts[..., None, :] + ALONG[:, None] * steps[..., None, :]
-    pixels = places[..., None, :] + across[..., None, :, None] * outward[..., None, None, :]
+    places = sides.starts[..., None, :] + ALONG[:, None] * sides.steps[..., None, :]
+    pixels = places[..., None, :] + across[..., None, :, None] * sides.outward[..., None, None, :]
     flat = pixels.astype(np.float32).reshape(-1, STEPS, 2)
-    levels = cv2.remap(
-        image.astype(np.float32), flat, None, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE
-    )
-    # Outward from black to white: what falls is something else.
-    slopes = np.maximum(np.gradient(levels.reshape(pixels.shape[:-1]).astype(np.float64), axis=-1), 0) ** 2
-    weights = slopes.sum(axis=-1)
-    edges = (slopes * across[..., None, :]).sum(axis=-1) / np.maximum(weights, 1e-9)
+    levels = cv2.remap(image, flat, None, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
+    # What gets darker outward is another edge. Squared, the steepest place counts most.
+    slopes = np.gradient(levels.reshape(pixels.shape[:-1]).astype(np.float64), axis=-1)
+    weights = np.square(np.maximum(slopes, 0))
+    edges = (weights * across[..., None, :]).sum(axis=-1) / np.maximum(weights.sum(axis=-1), 1e-9)
     powers = ALONG[:, None] ** np.arange(3)
     trust = np.ones_like(edges)
     for _ in range(FIT_STEPS):
         weighted = np.swapaxes(powers * trust[..., None], -1, -2)
-        fit = np.linalg.solve(weighted @ powers, weighted @ edges[..., None])[..., 0]
-        misses = edges - fit @ powers.T
+        bends = np.linalg.solve(weighted @ powers, weighted @ edges[..., None])[..., 0]
+        misses = edges - bends @ powers.T
         trust = 1 / (1 + (misses / STRAYING_PX) ** 2) ** 2
     strayed = np.sqrt((trust * misses**2).sum(axis=-1) / trust.sum(axis=-1)) > STRAYING_PX
-    lost = strayed | (trust.mean(axis=-1) < 0.5) | (np.abs(fit @ powers.T).max(axis=-1) > reach)
-    return np.where(lost[..., None], np.nan, fit)
+    far = np.abs(bends @ powers.T).max(axis=-1) > reach
+    return np.where((strayed | far | (trust.mean(axis=-1) < MOSTLY))[..., None], np.nan, bends)
 
 
-def _meeting(starts: FloatArray, steps: FloatArray, outward: FloatArray, offsets: FloatArray) -> FloatArray:
-    """Where each side [N, 4] meets the one before it: the tag's corners [N, 4, 2]."""
-    before = [np.roll(array, 1, axis=1) for array in (starts, steps, outward, offsets)]
-    sides = (before, [starts, steps, outward, offsets])
-    shares = [np.ones(starts.shape[:2]), np.zeros(starts.shape[:2])]
+def _meeting(sides: _Sides, bends: FloatArray) -> FloatArray:
+    """Where each side meets the one before it: the tags' corners [N, 4, 2]."""
+    before, bends_before = sides.before(), np.roll(bends, 1, axis=1)
+    ending, beginning = np.ones(bends.shape[:2]), np.zeros(bends.shape[:2])
     for _ in range(FIT_STEPS):
-        points, tangents = zip(
-            *(_on_side(*side, share) for side, share in zip(sides, shares, strict=True)), strict=True
-        )
-        gap = points[1] - points[0]
-        J = np.stack([tangents[0], -tangents[1]], axis=-1)
-        moves = np.linalg.solve(J, gap[..., None])[..., 0]
-        shares = [shares[0] + moves[..., 0], shares[1] + moves[..., 1]]
-    met: FloatArray = _on_side(*sides[1], shares[1])[0]
-    return met
+        (end, slope_end), (begin, slope_begin) = before.at(ending, bends_before), sides.at(beginning, bends)
+        J = np.stack([slope_end, -slope_begin], axis=-1)
+        moves = np.linalg.solve(J, (begin - end)[..., None])[..., 0]
+        ending, beginning = ending + moves[..., 0], beginning + moves[..., 1]
+    return sides.at(beginning, bends)[0]
 
 
-def _on_side(
-    starts: FloatArray, steps: FloatArray, outward: FloatArray, offsets: FloatArray, shares: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """Points [N, 4, 2] on the sides at a share of their lengths [N, 4], and the slopes there."""
-    a, b, c = np.moveaxis(offsets, -1, 0)
-    points = starts + shares[..., None] * steps + (a + shares * (b + shares * c))[..., None] * outward
-    return points, steps + (b + 2 * shares * c)[..., None] * outward
+def _touched(image: Grey, sides: _Sides, corners: FloatArray) -> BoolArray:
+    """Whether a black square touches the corners [N, 4, 2] from outside [N, 4]."""
+    before = sides.before()
+    shorter = np.minimum(sides.lengths, before.lengths)[..., None]
+    out = BESIDE * shorter * (sides.outward + before.outward)
+    outside, inside = levels_at(image, corners + out), levels_at(image, corners - out)
+    return np.asarray(outside < inside + LEAST_CONTRAST)
 
 
 @cache
 def _one_border() -> tuple[tuple[str, ...], Any]:
+    """The families with a border of one module, and their detector."""
     return tuple(FAMILIES), _detector(tuple(FAMILIES), border=1)
 
 
 @cache
 def _kalibr_border() -> tuple[tuple[str, ...], Any]:
+    """The family of Kalibr's AprilGrid, and its detector."""
     return ("AprilTag 36h11",), _detector(("AprilTag 36h11",), KALIBR_BORDER)
 
 
