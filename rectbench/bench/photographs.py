@@ -23,6 +23,8 @@ IMAGE_SUFFIXES = frozenset(
 CALIBRATION_SUFFIXES = frozenset(
     {".yaml", ".yml", ".xml", ".json", ".txt", ".bin", ".cameramodel", ".cfg", ".conf"}
 )
+TOLD_SUFFIXES = CALIBRATION_SUFFIXES - {".txt", ".bin"}
+"""Of files that look like a calibration: others are notes as often."""
 NO_PHOTOGRAPHS = frozenset(
     {"disp", "disparity", "depth", "flow", "seg", "semantic", "label", "labels", "nocc", "occ"}
 )
@@ -162,6 +164,11 @@ def _calibrations(
         yield _stated(root, name, rig, pairs)
     may_be = [f for f in files if f.suffix.lower() in CALIBRATION_SUFFIXES and f not in stated]
     known = [file for file in may_be if is_calibration(file)]
+    left_out += [
+        LeftOut(file, "no calibration of a format known here")
+        for file in may_be
+        if file not in known and file.suffix.lower() in TOLD_SUFFIXES
+    ]
     found, parts = list[Calibration](), list[LeftOut]()
     for file in known:
         _take([file], pairs, found, parts)
