@@ -292,6 +292,8 @@ def run(
 ) -> pd.DataFrame:
     """Run a report and write its folder: results, tables, figures and `index.html`.
 
+    A report of photographs, such as "real", takes them from the folder `data`.
+
     The arguments are those of `rectbench.bench.running.run`. Returns the rows of `results.parquet`.
     """
     from rectbench.bench import running

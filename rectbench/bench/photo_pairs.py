@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from rectbench.bench.found_calibrations import Calibration
 from rectbench.bench.keys import Inputs, code_digest, file_digest, versions
-from rectbench.bench.photographs import Calibration
 from rectbench.bench.rig_numbers import rig_numbers
 from rectbench.bench.tasks import PhotoTask
 from rectbench.matching.images import read_images, rgb8

@@ -102,10 +102,7 @@ def _photograph_facts(plan: Plan) -> dict[str, Any]:
     found = plan.photographs
     if found is None:
         return {}
-
-    def below(path: Path) -> str:
-        return path.relative_to(found.folder).as_posix() if path.is_relative_to(found.folder) else str(path)
-
+    below = found.below
     pairs = [
         {
             "name": pair.name,

@@ -110,7 +110,7 @@ def pair_chart(
 
 
 def _is_not_to_be_had(results: Sequence[Result], key: str) -> bool:
-    """Whether a pair has no such number, as one without a calibration board has not, though nothing failed."""
+    """Whether a pair has no such number though nothing failed, as one without a board has no board's."""
     return all(r.ok and key not in r.metrics for r in results)
 
 

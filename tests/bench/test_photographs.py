@@ -67,6 +67,34 @@ def test_a_pair_beside_two_calibrations_is_there_for_each(tmp_path: Path) -> Non
     assert names == [f"{tmp_path.name}-new", f"{tmp_path.name}-old"]
 
 
+def test_calibrations_of_one_name_are_told_apart_by_their_paths(tmp_path: Path) -> None:
+    for place in ("x/front", "y/front"):
+        write_pair(tmp_path / place)
+        RIG.save(tmp_path / place / "rig.yaml")
+    names = [pair.calibration.name for pair in find_photographs(tmp_path).pairs]
+    assert names == ["x-front-rig", "y-front-rig"]
+
+
+def test_a_folder_for_each_camera_with_its_calibration_is_one_rig(tmp_path: Path) -> None:
+    body = np.eye(4)
+    for side, x in ((0, 0.0), (1, 0.11)):
+        body[0, 3] = x
+        write_image(tmp_path / f"cam{side}/data/17.png", seed=side)
+        sensor = {
+            "sensor_type": "camera",
+            "T_BS": {"cols": 4, "rows": 4, "data": body.ravel().tolist()},
+            "resolution": [96, 64],
+            "camera_model": "pinhole",
+            "intrinsics": [80.0, 80.0, 48.0, 32.0],
+            "distortion_model": "radial-tangential",
+            "distortion_coefficients": [0.0, 0.0, 0.0, 0.0],
+        }
+        (tmp_path / f"cam{side}/sensor.yaml").write_text(yaml.safe_dump(sensor))
+    (pair,) = find_photographs(tmp_path).pairs
+    assert (pair.name, pair.left.parent.parent.name) == ("17", "cam0")
+    assert pair.calibration.rig().centre_right_in_left == pytest.approx([0.11, 0, 0])
+
+
 def test_pairs_of_one_name_are_told_apart_by_their_folders(tmp_path: Path) -> None:
     for place in ("one", "two"):
         write_pair(tmp_path / place)

@@ -10,7 +10,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import rectbench as rb
-from rectbench.matching import board_matches
+from rectbench import board_matches
 from rectbench.matching.images import read_images
 from tests.matching.flat_board import Seen, chessboard, misses, seen_board, tag_grid
 from tests.matching.sphere_room import sphere_pair

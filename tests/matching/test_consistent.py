@@ -9,7 +9,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import rectbench as rb
-from rectbench.matching import consistent_matches
+from rectbench import consistent_matches
 from rectbench.metrics import row_error
 from tests.matching.sphere_room import sphere_pair, sphere_truth
 from tests.rigs_for_tests import rig
