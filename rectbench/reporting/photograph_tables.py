@@ -7,6 +7,7 @@ from typing import Any
 
 from rectbench.reporting.columns import column
 from rectbench.reporting.labels import one_line, pair_labels
+from rectbench.reporting.numbers import MISSING
 from rectbench.reporting.run_folder import Run
 from rectbench.reporting.tables import Heading, Section, Table, number, words
 
@@ -33,7 +34,8 @@ def _pairs_table(run: Run, found: Mapping[str, Any]) -> Table:
         told = [r.notes for r in results]
         board = next((str(notes["board"]) for notes in told if "board" in notes), "")
         trouble = next((str(notes["no_features"]) for notes in told if "no_features" in notes), "")
-        counts = [next((r.metrics[key] for r in results if key in r.metrics), None) for key in keys]
+        # A method that shows less of the view has fewer of them to be measured by.
+        counts = [max((r.metrics[key] for r in results if key in r.metrics), default=None) for key in keys]
         pair = files[place[0], place[1]]
         said = [*([f"no matches: {trouble}"] if trouble else []), *remarks.get(place[1], [])]
         rows.append(
@@ -42,7 +44,7 @@ def _pairs_table(run: Run, found: Mapping[str, Any]) -> Table:
                 words(pair["left"]),
                 words(pair["right"]),
                 *(number(count, column(key)) for count, key in zip(counts, keys, strict=True)),
-                words(board),
+                words(board or MISSING),
                 words("; ".join(said)),
             )
         )
