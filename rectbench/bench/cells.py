@@ -246,8 +246,13 @@ def _scores(
     if "distortion" in asked:
         columns |= distortion_columns(Jacobians.at(rectification))
     if by_estimate:
-        compared = calibration_columns if isinstance(pair, PhotoTask) else pose_columns
-        columns |= compared(estimated_pose(pair, store), rig)
+        estimate = estimated_pose(pair, store)
+        if isinstance(pair, PhotoTask):
+            columns |= calibration_columns(estimate, rig)
+            if contradiction := estimate.contradiction(rig):
+                remarks["contradiction"] = contradiction
+        else:
+            columns |= pose_columns(estimate, rig)
     if "energy" in asked:
         columns["energy_convex_share"] = energy_convex_share(rectification)
     if "reconstruction" in asked:

@@ -40,7 +40,12 @@ def measure(
         row |= row_error(rect, *true_matches).columns()
     if feature_matches is not None:
         features = row_error(rect, *feature_matches).columns()
-        names = ("row_error_mean_px", "row_error_median_px", "row_error_matches")
+        names = (
+            "row_error_mean_px",
+            "row_error_median_px",
+            "row_error_source_mean_px",
+            "row_error_matches",
+        )
         row |= {name.replace("row_error", "row_error_features"): features[name] for name in names}
     if board_matches is not None:
         board = row_error(rect, *board_matches).columns()

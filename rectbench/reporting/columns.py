@@ -112,6 +112,11 @@ METRICS: tuple[Column, ...] = (
         "Mean row error of SIFT matches found in the images; it holds the detector's own noise.",
     ),
     _pixels("row_error_features_median_px", "row error, SIFT, median", "Median row error of SIFT matches."),
+    _pixels(
+        "row_error_features_source_mean_px",
+        "row error, SIFT, source",
+        "Mean row error of SIFT matches in pixels of the source images.",
+    ),
     _count("row_error_features_matches", "SIFT matches", "SIFT matches that their row error is taken over."),
     _distortion(
         "log_distortion",
@@ -312,6 +317,7 @@ PHOTOGRAPH_KEYS = (
     "row_error_board_mean_px",
     "row_error_board_source_mean_px",
     "row_error_features_mean_px",
+    "row_error_features_source_mean_px",
     "coverage_pixels",
     "coverage_solid_angle",
     "sampling_lost",
@@ -368,6 +374,7 @@ ROW_KEYS = (
     "row_error_board_points",
     "row_error_features_mean_px",
     "row_error_features_median_px",
+    "row_error_features_source_mean_px",
     "row_error_features_matches",
     "row_error_mean_px",
     "row_error_median_px",

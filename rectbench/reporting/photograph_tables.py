@@ -13,6 +13,9 @@ from rectbench.reporting.tables import Heading, Section, Table, number, words
 
 COUNTED = ("pose_inliers", "row_error_features_matches", "row_error_board_points")
 
+TROUBLE = ("contradiction", "no_features")
+"""What the cells of a pair note about its images and calibration."""
+
 
 def photograph_tables(run: Run) -> Iterator[Table]:
     """The pairs with their files, then the files of the folder that no pair has; none for rendered pairs."""
@@ -31,20 +34,18 @@ def _pairs_table(run: Run, found: Mapping[str, Any]) -> Table:
     rows = []
     for place, label in pair_labels(run).items():
         results = run.select(place=place)
-        told = [r.notes for r in results]
-        board = next((str(notes["board"]) for notes in told if "board" in notes), "")
-        trouble = next((str(notes["no_features"]) for notes in told if "no_features" in notes), "")
+        told = {name: str(text) for r in results for name, text in r.notes.items()}
         # A method that shows less of the view has fewer of them to be measured by.
         counts = [max((r.metrics[key] for r in results if key in r.metrics), default=None) for key in keys]
         pair = files[place[0], place[1]]
-        said = [*([f"no matches: {trouble}"] if trouble else []), *remarks.get(place[1], [])]
+        said = [*(told[name] for name in TROUBLE if name in told), *remarks.get(place[1], [])]
         rows.append(
             (
                 words(one_line(label)),
                 words(pair["left"]),
                 words(pair["right"]),
                 *(number(count, column(key)) for count, key in zip(counts, keys, strict=True)),
-                words(board or MISSING),
+                words(told.get("board", MISSING)),
                 words("; ".join(said)),
             )
         )
