@@ -28,9 +28,9 @@ NEIGHBOURS, AGREEMENT_STEPS = 12, 10
 """Corners about a tag's corner that say where it should be, and steps of the robust fit to them."""
 AGREEING_PX, WITHIN_MEDIANS = 0.5, 4.0
 """A corner farther off than both, the latter times the median, is not the same in both images."""
-BEGINNINGS = ((4, 4), (6, 5), (3, 3))
+BEGINNINGS = ((4, 4), (6, 5))
 """Grids of corners that the search begins with, each in its turn: of a bent board OpenCV misorders some."""
-LEAST_CORNERS = 15
+LEAST_CORNERS = 20
 """Corners on a chessboard; smaller grids are found in gravel and foliage."""
 SEARCHED_PIXELS = 1_000_000
 """A chessboard is searched for on an image of so many pixels; its corners are refined on the image itself."""

@@ -7,6 +7,9 @@ the better one where a black square touches the corner from outside, as on Kalib
 
 from __future__ import annotations
 
+import itertools
+import math
+from collections.abc import Sequence
 from functools import cache
 from typing import Any, NamedTuple
 
@@ -25,8 +28,12 @@ FAMILIES = {
     "ArUco 7x7": "DICT_7X7_1000",
 }
 """Names of families, and OpenCV's. A family's smaller dictionaries are the beginning of its largest."""
-KALIBR_BORDER = 2
-"""Modules of black about a tag of Kalibr's AprilGrid; elsewhere there is one."""
+BORDERS = {"AprilTag 36h11": (1, 2)}
+"""Modules of black about a tag, where there may be more than one: there are two on Kalibr's AprilGrid."""
+SEARCHED_PIXELS = (350_000, 1_000_000)
+"""Sizes of the image in which tags are looked for: near ones whose corners are touched, and far ones."""
+NEAR = 0.8
+"""How much smaller the one has to be than the other to be worth the time."""
 ALONG: FloatArray = np.linspace(0.14, 0.86, 25)
 """Where a side is looked at, as shares of its length: a square may touch its ends."""
 ACROSS, LEAST_ACROSS, MOST_ACROSS = 0.1, 2.0, 8.0
@@ -51,20 +58,40 @@ def tags(image: Grey) -> dict[str, dict[int, FloatArray]]:
 
     A corner is NaN where one of its sides is not found. An identity that is seen twice is left out.
     """
-    found: dict[str, dict[int, FloatArray]] = {}
-    twice: set[tuple[str, int]] = set()
-    for families, detector in (_one_border(), _kalibr_border()):
-        corners, ids, _, family = detector.detectMarkersMultiDict(image)
-        if ids is None:
-            continue
-        for quad, one, which in zip(corners, np.ravel(ids), np.ravel(family), strict=True):
-            seen = found.setdefault(families[which], {})
-            if int(one) in seen:
-                twice.add((families[which], int(one)))
-            seen[int(one)] = quad.reshape(4, 2).astype(np.float64)
-    for name, one in twice:
-        del found[name][one]
-    return {name: _refined(image, seen) for name, seen in found.items() if seen}
+    searched = _sizes(image)
+    found = {family: _seen(image, searched, family) for family in FAMILIES}
+    return {family: _refined(image, seen) for family, seen in found.items() if seen}
+
+
+def _sizes(image: Grey) -> list[Grey]:
+    """The image in the sizes of `SEARCHED_PIXELS`, a small one as it is alone."""
+    coarse, fine = (min(1.0, math.sqrt(pixels / image.size)) for pixels in SEARCHED_PIXELS)
+    factors = [coarse, fine] if coarse < NEAR * fine else [fine]
+    return [
+        np.asarray(cv2.resize(image, None, fx=factor, fy=factor, interpolation=cv2.INTER_AREA), np.uint8)
+        for factor in factors
+    ]
+
+
+def _seen(image: Grey, searched: Sequence[Grey], family: str) -> dict[int, FloatArray]:
+    """The tags of a family by identity, found in `searched` sizes of the image; good to a pixel or two."""
+    seen: dict[int, FloatArray] = {}
+    twice: set[int] = set()
+    for small, detector in itertools.product(searched, _detectors(family)):
+        enlarged = np.array(image.shape[::-1]) / small.shape[::-1]
+        corners, ids, _ = detector.detectMarkers(small)
+        for quad, one in zip(corners, () if ids is None else map(int, np.ravel(ids)), strict=True):
+            tag = (quad.reshape(4, 2).astype(np.float64) + 0.5) * enlarged - 0.5
+            if one in seen and not _is_same(seen[one], tag):
+                twice.add(one)
+            seen[one] = tag
+    return {one: tag for one, tag in seen.items() if one not in twice}
+
+
+def _is_same(tag: FloatArray, other: FloatArray) -> bool:
+    """Whether two outlines [4, 2] are those of one tag, found at two sizes of the image."""
+    apart, side = np.linalg.norm(tag.mean(axis=0) - other.mean(axis=0)), np.linalg.norm(tag[1] - tag[0])
+    return bool(apart < side / 2)
 
 
 class _Sides(NamedTuple):
@@ -158,19 +185,12 @@ def _touched(image: Grey, sides: _Sides, corners: FloatArray) -> BoolArray:
 
 
 @cache
-def _one_border() -> tuple[tuple[str, ...], Any]:
-    """The families with a border of one module, and their detector."""
-    return tuple(FAMILIES), _detector(tuple(FAMILIES), border=1)
-
-
-@cache
-def _kalibr_border() -> tuple[tuple[str, ...], Any]:
-    """The family of Kalibr's AprilGrid, and its detector."""
-    return ("AprilTag 36h11",), _detector(("AprilTag 36h11",), KALIBR_BORDER)
-
-
-def _detector(families: tuple[str, ...], border: int) -> Any:
-    dictionaries = [cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, FAMILIES[one])) for one in families]
-    parameters = cv2.aruco.DetectorParameters()
-    parameters.markerBorderBits = border
-    return cv2.aruco.ArucoDetector(dictionaries, parameters)
+def _detectors(family: str) -> tuple[Any, ...]:
+    """OpenCV's detectors of a family, one for each border its tags are printed with."""
+    dictionary = cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, FAMILIES[family]))
+    detectors = []
+    for border in BORDERS.get(family, (1,)):
+        parameters = cv2.aruco.DetectorParameters()
+        parameters.markerBorderBits = border
+        detectors.append(cv2.aruco.ArucoDetector(dictionary, parameters))
+    return tuple(detectors)
