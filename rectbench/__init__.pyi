@@ -20,8 +20,11 @@ from .errors import RectbenchError as RectbenchError
 from .errors import Unavailable as Unavailable
 from .errors import UnknownName as UnknownName
 from .errors import Unsupported as Unsupported
+from .matching import BoardMatches as BoardMatches
 from .matching import PoseEstimate as PoseEstimate
 from .matching import Reconstruction as Reconstruction
+from .matching import board_matches as board_matches
+from .matching import consistent_matches as consistent_matches
 from .matching import fundamental_matrix as fundamental_matrix
 from .matching import reconstruct as reconstruct
 from .matching import sampson_residuals as sampson_residuals

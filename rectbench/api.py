@@ -283,6 +283,7 @@ def run(
     scenes: Sequence[str] | None = None,
     rigs: Sequence[str] | None = None,
     seeds: Sequence[int] | None = None,
+    data: str | Path | None = None,
     options: Mapping[str, Mapping[str, Any]] | None = None,
     jobs: int | None = None,
     dask: str | None = None,
@@ -290,6 +291,8 @@ def run(
     progress: bool | None = None,
 ) -> pd.DataFrame:
     """Run a report and write its folder: results, tables, figures and `index.html`.
+
+    A report of photographs, such as "real", takes them from the folder `data`.
 
     The arguments are those of `rectbench.bench.running.run`. Returns the rows of `results.parquet`.
     """
@@ -304,6 +307,7 @@ def run(
         scenes=scenes,
         rigs=rigs,
         seeds=seeds,
+        data=data,
         options=options,
         jobs=jobs,
         dask=dask,

@@ -12,7 +12,12 @@ from typing import TypeVar
 
 import numpy as np
 
-from rectbench.bench.estimating import estimate_from_images, estimated_pose, pose_columns
+from rectbench.bench.estimating import (
+    calibration_columns,
+    estimate_from_images,
+    estimated_pose,
+    pose_columns,
+)
 from rectbench.bench.features import scored_features
 from rectbench.bench.keys import Inputs, code_digest, derived_seed, versions
 from rectbench.bench.outcomes import LASTING, Outcome, outcome_of
@@ -25,12 +30,13 @@ from rectbench.bench.pairs import (
     placed_rig,
     truth_inputs,
 )
-from rectbench.bench.planning import CellTask, PairTask
 from rectbench.bench.plugins import registry
 from rectbench.bench.rectifying import check_result, checked_options, fit
-from rectbench.bench.report_spec import ESTIMATED, IMAGE_METRICS
+from rectbench.bench.report_spec import CALIBRATED, ESTIMATED, IMAGE_METRICS
 from rectbench.bench.store import Store
-from rectbench.matching import reconstruct
+from rectbench.bench.tasks import AnyPair, CellTask, PairTask, PhotoTask
+from rectbench.errors import InvalidInput, PoseNotFound
+from rectbench.matching import BoardMatches, agreeing_matches, board_matches, reconstruct
 from rectbench.metrics import (
     Jacobians,
     distortion_columns,
@@ -62,7 +68,7 @@ def cell_inputs(task: CellTask) -> Inputs:
     method = registry("methods").get(task.method_source)
     return {
         "truth": truth_inputs(task.pair),
-        "images": image_inputs(task.pair) if _uses_images(task) else None,
+        "images": image_inputs(task.pair) if uses_images(task) else None,
         "pose": task.cell.pose,
         "method": method.name,
         "method_source": method.digest,
@@ -75,9 +81,11 @@ def cell_inputs(task: CellTask) -> Inputs:
     }
 
 
-def _uses_images(task: CellTask) -> bool:
+def uses_images(task: CellTask) -> bool:
+    """Whether the row of a cell hangs on its images, as that of photographs always does."""
     needs = registry("methods").get(task.method_source).value.needs
-    return "images" in needs or task.cell.pose == ESTIMATED or not IMAGE_METRICS.isdisjoint(task.metrics)
+    asked = "images" in needs or task.cell.pose == ESTIMATED or not IMAGE_METRICS.isdisjoint(task.metrics)
+    return asked or isinstance(task.pair, PhotoTask)
 
 
 def stored_outcome(task: CellTask, store: Store) -> Outcome | None:
@@ -118,11 +126,14 @@ def run_pair(pair: PairTask, store_root: Path) -> Outcome:
 def believed_rig(task: CellTask, store: Store) -> Rig:
     """What the rectifier is told: the true rig with its pose perturbed, or estimated from the images.
 
-    Images do not tell how long a baseline is: the true length stands in an estimated rig, too.
+    Of photographs it is the calibrated rig as it is, or in the pose that the images tell. Images do not
+    tell how long a baseline is: the known length stands in an estimated rig, too.
     """
     cell, rig = task.cell, placed_rig(task.pair)
     if cell.pose == ESTIMATED:
         return estimated_pose(task.pair, store).rig(rig)
+    if cell.pose == CALIBRATED:
+        return rig
     # Not named after the method: all methods of a pair are misled in the same way.
     seed = derived_seed("pose", cell.scene, cell.rig, cell.motion, cell.pose, cell.seed)
     return perturb(rig, POSES[cell.pose], seed)
@@ -141,9 +152,12 @@ def problem_of(task: CellTask, store: Store) -> Problem:
 
 
 def _given_matches(task: CellTask, store: Store) -> Matches:
-    """What a method that works from matches gets: those of the estimate, else true ones with noise."""
+    """What a method that works from matches gets: those of the estimate, else true ones with noise.
+
+    Photographs have no true ones: theirs are those of the estimate, whatever pose the others are told.
+    """
     cell = task.cell
-    if cell.pose == ESTIMATED:
+    if cell.pose == ESTIMATED or isinstance(task.pair, PhotoTask):
         return estimated_pose(task.pair, store).inliers
     seed = derived_seed("matches", cell.scene, cell.rig, cell.motion, cell.seed)
     truth = _truth(task.pair, store)
@@ -151,26 +165,45 @@ def _given_matches(task: CellTask, store: Store) -> Matches:
 
 
 @lru_cache(maxsize=1)
-def _true_matches(pair: PairTask, store: Store) -> Matches:
+def _true_matches(pair: AnyPair, store: Store) -> Matches:
     return Matches(*_truth(pair, store).matches(SCORED_MATCHES))
 
 
 @lru_cache(maxsize=1)
-def _feature_matches(pair: PairTask, by_estimate: bool, store: Store) -> Matches:
-    """Freed of wrong matches by the true pose; or, as the paper frees its own, by the estimated one."""
+def feature_matches(pair: AnyPair, by_estimate: bool, store: Store) -> Matches:
+    """Freed of wrong matches by the true pose; or, as the paper frees its own, by the estimated one.
+
+    Of photographs those that agree on the pose in the images, whatever the calibration says: it may be
+    what is wrong. Raises PoseNotFound where photographs tell none.
+    """
     rig = placed_rig(pair)
+    if isinstance(pair, PhotoTask):
+        photographs = load_images(pair, store)
+        images = Images(photographs.left, photographs.right)
+        return agreeing_matches(estimated_pose(pair, store), rig.left, rig.right, images)
     known = estimated_pose(pair, store).rig(rig) if by_estimate else rig
     return scored_features(load_images(pair, store), known)
 
 
 @lru_cache(maxsize=1)
-def _truth(pair: PairTask, store: Store) -> Truth:
+def corners_of_board(pair: AnyPair, store: Store) -> BoardMatches | None:
+    """The corners of a calibration board that both images of a pair show; None where they show none."""
+    images = load_images(pair, store)
+    return board_matches(images.left, images.right)
+
+
+@lru_cache(maxsize=1)
+def _truth(pair: AnyPair, store: Store) -> Truth:
     """Kept, since the methods of one pair run one after another."""
+    if isinstance(pair, PhotoTask):
+        raise InvalidInput(f"nobody knows the truth about the photographs of {pair.scene}")
     return load_truth(pair, store)
 
 
 def _measured(task: CellTask, store: Store) -> Outcome:
     method = registry("methods").get(task.method_source)
+    if isinstance(task.pair, PhotoTask):
+        load_images(task.pair, store)  # raises for images that are not the calibration's
     options, problem = checked_options(method, task.options), problem_of(task, store)
     columns: dict[str, float] = {}
     if "timing" in task.metrics:
@@ -178,40 +211,59 @@ def _measured(task: CellTask, store: Store) -> Outcome:
         check_result(method.name, rectification, problem)
     else:
         rectification = fit(method, problem, options)
-    columns |= _scores(task, rectification, store)
+    scores, remarks = _scores(task, rectification, store)
+    columns |= scores
     if "timing" in task.metrics:
         columns |= _warp_times(rectification)
         if task.cell.pose == ESTIMATED:
             columns["pose_s"] = _pose_time(task.pair, store)
             columns["total_s"] = columns["pose_s"] + columns["fit_s"] + columns["warp_s"]
-    return Outcome(metrics=columns, notes=dict(rectification.notes))
+    return Outcome(metrics=columns, notes={**rectification.notes, **remarks})
 
 
-def _scores(task: CellTask, rectification: Rectification, store: Store) -> dict[str, float]:
+def _scores(
+    task: CellTask, rectification: Rectification, store: Store
+) -> tuple[dict[str, float], dict[str, str]]:
+    """The columns of the row, and what is to be said of them."""
     pair, asked, by_estimate = task.pair, task.metrics, task.cell.pose == ESTIMATED
-    rig, with_features = placed_rig(pair), "row_error_features" in asked
+    rig, remarks = placed_rig(pair), dict[str, str]()
+    features, board = None, corners_of_board(pair, store) if "row_error_board" in asked else None
+    if board is not None:
+        remarks["board"] = board.kind
+    if "row_error_features" in asked:
+        try:
+            features = feature_matches(pair, by_estimate, store)
+        except PoseNotFound as failure:
+            remarks["no_features"] = str(failure)
     columns = measure(
         rectification,
         rig,
         geometry="geometry" in asked,
         true_matches=_true_matches(pair, store) if "row_error" in asked else None,
-        feature_matches=_feature_matches(pair, by_estimate, store) if with_features else None,
+        feature_matches=features,
+        board_matches=board.matches if board else None,
     )
     if "distortion" in asked:
         columns |= distortion_columns(Jacobians.at(rectification))
     if by_estimate:
-        columns |= pose_columns(estimated_pose(pair, store), rig)
+        estimate = estimated_pose(pair, store)
+        if isinstance(pair, PhotoTask):
+            columns |= calibration_columns(estimate, rig)
+            if contradiction := estimate.contradiction(rig):
+                remarks["contradiction"] = contradiction
+        else:
+            columns |= pose_columns(estimate, rig)
     if "energy" in asked:
         columns["energy_convex_share"] = energy_convex_share(rectification)
     if "reconstruction" in asked:
         images = load_images(pair, store)
         found = reconstruct(rectification, images.left, images.right)
         columns |= reconstruction_scores(found, _truth(pair, store))
-    return columns
+    return columns, remarks
 
 
 @lru_cache(maxsize=1)
-def _pose_time(pair: PairTask, store: Store) -> float:
+def _pose_time(pair: AnyPair, store: Store) -> float:
     """Seconds from the two images, in memory, to the pose."""
     images = load_images(pair, store)
     return timed(lambda: estimate_from_images(pair, images))[1]

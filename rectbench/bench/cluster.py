@@ -20,8 +20,8 @@ from typing import Any
 from rectbench.bench.cells import cell_inputs, run_cell
 from rectbench.bench.keys import digest
 from rectbench.bench.outcomes import Outcome
-from rectbench.bench.planning import CellTask
 from rectbench.bench.store import Store
+from rectbench.bench.tasks import CellTask
 from rectbench.bench.worker import Limits, restrict
 from rectbench.errors import RectbenchError, Unavailable
 

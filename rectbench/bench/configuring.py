@@ -23,6 +23,7 @@ RUN_KEYS: Mapping[str, type | tuple[type, ...]] = {
     "scenes": list,
     "rigs": list,
     "seeds": list,
+    "data": str,
     "jobs": int,
     "dask": str,
     "fresh": bool,

@@ -10,8 +10,8 @@ import numpy as np
 
 from rectbench.bench.keys import Inputs, code_digest, derived_seed, versions
 from rectbench.bench.pairs import image_inputs, load_images, placed_rig
-from rectbench.bench.planning import PairTask
 from rectbench.bench.store import Store
+from rectbench.bench.tasks import AnyPair
 from rectbench.errors import PoseNotFound
 from rectbench.matching import PoseEstimate, pose_from_images
 from rectbench.rendering.images import StereoPair
@@ -24,7 +24,7 @@ ESTIMATING_PACKAGES = ("numpy", "scipy", "opencv-contrib-python-headless")
 NUMBERS, REASON = "pose.npz", "reason.json"
 
 
-def estimate_from_images(pair: PairTask, images: StereoPair) -> PoseEstimate:
+def estimate_from_images(pair: AnyPair, images: StereoPair) -> PoseEstimate:
     """The estimate, made anew from the pair's images; raises PoseNotFound where they tell none."""
     rig = placed_rig(pair)
     seed = derived_seed("consensus", pair.scene, pair.rig, pair.motion, pair.seed)
@@ -33,7 +33,7 @@ def estimate_from_images(pair: PairTask, images: StereoPair) -> PoseEstimate:
 
 
 @lru_cache(maxsize=1)
-def estimated_pose(pair: PairTask, store: Store) -> PoseEstimate:
+def estimated_pose(pair: AnyPair, store: Store) -> PoseEstimate:
     """The estimate of a pair, from the store where it is known; all methods of a pair share it.
 
     Raises PoseNotFound, with the reason, where the images tell no pose.
@@ -67,7 +67,13 @@ def pose_columns(estimate: PoseEstimate, truth: Rig) -> dict[str, float]:
     }
 
 
-def _inputs(pair: PairTask) -> Inputs:
+def calibration_columns(estimate: PoseEstimate, calibrated: Rig) -> dict[str, float]:
+    """The same of photographs: how far the estimate is from the calibration; neither is the truth."""
+    columns = pose_columns(estimate, calibrated)
+    return {name.replace("_error_deg", "_difference_deg"): value for name, value in columns.items()}
+
+
+def _inputs(pair: AnyPair) -> Inputs:
     return {
         **image_inputs(pair),
         "estimating_code": code_digest(*ESTIMATING_CODE),

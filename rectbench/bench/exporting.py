@@ -29,12 +29,12 @@ from rectbench.bench.pairs import (
     RENDERING_PACKAGES,
     placed,
     render_seed,
-    rig_numbers,
     set_stage,
 )
 from rectbench.bench.plugins import Plugin, registry
 from rectbench.bench.progress import Progress
 from rectbench.bench.rectifying import checked_options, fit
+from rectbench.bench.rig_numbers import rig_numbers
 from rectbench.errors import InvalidInput
 from rectbench.rigs import Rig
 from rectbench.warps import Options, Rectification, pose_problem

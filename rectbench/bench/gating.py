@@ -14,10 +14,10 @@ from typing import Any, Literal
 
 import pandas as pd
 
-from rectbench.bench.planning import IDENTITY
 from rectbench.bench.plugins import registry
 from rectbench.bench.report_spec import ESTIMATED
 from rectbench.bench.run_folder import read_facts, read_results
+from rectbench.bench.tasks import IDENTITY
 from rectbench.errors import InvalidInput, UnknownName
 
 KEY = [name for name in IDENTITY if name != "report"]
@@ -50,6 +50,7 @@ GATED: dict[str, Tolerance] = {
     "row_error_mean_px": Tolerance("lower", 0.02, 1e-6),
     "row_error_p95_px": Tolerance("lower", 0.05, 1e-6),
     "row_error_source_mean_px": Tolerance("lower", 0.02, 1e-6),
+    "row_error_board_mean_px": Tolerance("lower", 0.05, 0.01),
     "row_error_features_mean_px": Tolerance("lower", 0.1, 0.02),
     "distortion_native": Tolerance("lower", 0.01, 1e-6),
     "distortion_rescaled": Tolerance("lower", 0.01, 1e-6),
@@ -101,6 +102,10 @@ class Verdict:
 def accepted_path(run_dir: Path) -> Path:
     """Where the accepted numbers of the run's report lie: beside the report's file."""
     facts = read_facts(run_dir)
+    if "photographs" in facts:
+        raise InvalidInput(
+            f"{run_dir} is a run of photographs, whose numbers are not the report's; expected --accepted FILE"
+        )
     try:
         report = registry("reports").get(facts["report"]).path
     except UnknownName:

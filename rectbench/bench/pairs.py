@@ -1,4 +1,4 @@
-"""The pair under a cell: the rig placed in its scene, rendered once and kept in the store."""
+"""The pair under a cell: the rig placed in its scene, rendered once and kept in the store; or photographs."""
 
 from __future__ import annotations
 
@@ -7,13 +7,14 @@ import sys
 from contextlib import suppress
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from rectbench.bench.keys import Inputs, code_digest, derived_seed, versions
-from rectbench.bench.planning import PairTask
+from rectbench.bench.photo_pairs import calibrated_rig, calibration_inputs, photo_inputs, read_photographs
 from rectbench.bench.plugins import registry
+from rectbench.bench.rig_numbers import rig_numbers
 from rectbench.bench.store import Store
-from rectbench.cameras import Camera
+from rectbench.bench.tasks import AnyPair, PairTask, PhotoTask
 from rectbench.errors import InvalidResult, Unavailable, UnknownName
 from rectbench.rendering.images import StereoPair
 from rectbench.rendering.truth import Truth
@@ -31,8 +32,10 @@ RENDERING_CODE = (*GEOMETRY_CODE, "rendering", "bench/pairs")
 RENDERING_PACKAGES = ("numpy", "scipy", "opencv-contrib-python-headless", "mitsuba", "drjit")
 
 
-def placed_rig(pair: PairTask) -> Rig:
-    """The true rig of a pair."""
+def placed_rig(pair: AnyPair) -> Rig:
+    """The true rig of a pair; of photographs the calibrated one."""
+    if isinstance(pair, PhotoTask):
+        return calibrated_rig(pair)
     return placed(load_rig(pair.rig_source), pair.scene, pair.motion, pair.seed, pair.image_width)
 
 
@@ -53,8 +56,10 @@ def render_seed(scene: str, rig: str, motion: str, seed: int) -> int:
     return derived_seed("render", scene, rig, motion, seed)
 
 
-def truth_inputs(pair: PairTask) -> Inputs:
-    """All that shapes the truth of a pair."""
+def truth_inputs(pair: AnyPair) -> Inputs:
+    """All that shapes the truth of a pair; of photographs the calibration, which stands in its place."""
+    if isinstance(pair, PhotoTask):
+        return calibration_inputs(pair)
     return {
         "scene": pair.scene,
         "scene_source": registry("scenes").get(pair.scene_source).digest,
@@ -67,33 +72,17 @@ def truth_inputs(pair: PairTask) -> Inputs:
     }
 
 
-def image_inputs(pair: PairTask) -> Inputs:
+def image_inputs(pair: AnyPair) -> Inputs:
     """All that shapes the images of a pair."""
+    if isinstance(pair, PhotoTask):
+        return photo_inputs(pair)
     return {**truth_inputs(pair), "quality": pair.quality, "spp": pair.spp}
 
 
-def rig_numbers(rig: Rig) -> dict[str, Any]:
-    """A rig as JSON: its name and every number in it."""
-    return {
-        "name": rig.name,
-        "left": _camera_numbers(rig.left),
-        "right": _camera_numbers(rig.right),
-        "R_right_left": rig.R_right_left.tolist(),
-        "t_right_left": rig.t_right_left.tolist(),
-    }
-
-
-def _camera_numbers(camera: Camera) -> dict[str, Any]:
-    return {
-        "model": camera.model,
-        "size": list(camera.size),
-        "params": {name: list(v) if isinstance(v, tuple) else v for name, v in camera.params.items()},
-        "max_angle_deg": camera.max_angle_deg,
-    }
-
-
-def is_made(pair: PairTask, store: Store) -> bool:
+def is_made(pair: AnyPair, store: Store) -> bool:
     """Whether the store has all that is asked of the pair, its files unchecked."""
+    if isinstance(pair, PhotoTask):
+        return True
     return (not pair.truth or store.has(TRUTH, truth_inputs(pair))) and (
         not pair.images or store.has(IMAGES, image_inputs(pair))
     )
@@ -114,8 +103,10 @@ def load_truth(pair: PairTask, store: Store) -> Truth:
     return Truth.load(_folder(TRUTH, pair, store) / "truth.npz")
 
 
-def load_images(pair: PairTask, store: Store) -> StereoPair:
-    """The images of a pair, made first where the store lacks them."""
+def load_images(pair: AnyPair, store: Store) -> StereoPair:
+    """The images of a pair, made first where the store lacks them; photographs are read from their files."""
+    if isinstance(pair, PhotoTask):
+        return read_photographs(pair)
     return StereoPair.load(_folder(IMAGES, pair, store))
 
 

@@ -4,89 +4,20 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 from rectbench.bench.keys import canonical_json
+from rectbench.bench.photographs import Photographs, find_photographs
 from rectbench.bench.plugins import Plugin, is_path, registry
 from rectbench.bench.rectifying import checked_options
 from rectbench.bench.report_spec import ESTIMATED, Group, PairName, Report
+from rectbench.bench.tasks import AS_CALIBRATED, AnyPair, Cell, CellTask, PairTask, PhotoTask
 from rectbench.errors import InvalidInput, UnknownName
 from rectbench.rigs import load_rig, rig_names
 from rectbench.rigs.motions import MOTIONS
 from rectbench.rigs.poses import POSES
-
-IDENTITY = ("report", "scene", "rig", "motion", "pose", "method", "options", "seed")
-"""The columns that say which cell a row is; `status` and `reason` follow, then the metrics."""
-
-
-@dataclass(frozen=True)
-class Cell:
-    """Which cell of which report: what its row and its random numbers are named after."""
-
-    report: str
-    scene: str
-    rig: str
-    motion: str
-    pose: str
-    method: str
-    options: str
-    """The options given, as canonical JSON; "{}" where all are the method's own."""
-    seed: int
-
-
-@dataclass(frozen=True)
-class PairTask:
-    """A pair of images and its truth: a rig that stands in a scene."""
-
-    scene: str
-    rig: str
-    motion: str
-    seed: int
-    scene_source: str
-    """The scene's name, or the absolute path of its file."""
-    rig_source: str
-    image_width: int | None
-    quality: str
-    spp: int
-    truth: bool
-    """Whether anything asks for the truth."""
-    images: bool
-    """Whether anything asks for the rendered images."""
-
-
-@dataclass(frozen=True)
-class CellTask:
-    """All that a process needs to know to run one cell, as plain values."""
-
-    cell: Cell
-    pair: PairTask
-    method_source: str
-    options: dict[str, Any]
-    metrics: tuple[str, ...]
-    match_count: int
-    match_noise_px: float
-    group: str = ""
-    """The part of the report it belongs to."""
-    alone: bool = False
-    """Whether it runs with the machine to itself."""
-
-    def to_json(self) -> dict[str, Any]:
-        """As JSON values."""
-        return asdict(self)
-
-    @staticmethod
-    def from_json(values: Mapping[str, Any]) -> CellTask:
-        """The task that `to_json` wrote."""
-        return CellTask(
-            **{
-                **values,
-                "cell": Cell(**values["cell"]),
-                "pair": PairTask(**values["pair"]),
-                "metrics": tuple(values["metrics"]),
-            }
-        )
 
 
 @dataclass(frozen=True)
@@ -108,6 +39,8 @@ class Plan:
     report: Report
     selection: Selection
     tasks: tuple[CellTask, ...]
+    photographs: Photographs | None = None
+    """What was found in the folder, for a report of photographs."""
 
     @property
     def is_whole(self) -> bool:
@@ -119,7 +52,7 @@ class Plan:
         )
 
     @property
-    def pairs(self) -> tuple[PairTask, ...]:
+    def pairs(self) -> tuple[AnyPair, ...]:
         """The pairs the cells stand on, each once."""
         return tuple(dict.fromkeys(task.pair for task in self.tasks))
 
@@ -143,17 +76,25 @@ def find_report(report: Report | str | Path) -> Report:
     return found
 
 
-def make_plan(report: Report, selection: Selection | None = None) -> Plan:
+def make_plan(report: Report, selection: Selection | None = None, data: str | Path | None = None) -> Plan:
     """The cells of a report, or of the selected part of it.
 
     A selected name need not be one of the report's: `methods=["mine.py"]` runs a method of one's own
-    on the report's pairs. Raises UnknownName or InvalidInput for a name or option that does not exist.
+    on the report's pairs. `data` is the folder that a report of photographs takes them from. Raises
+    UnknownName or InvalidInput for a name or option that does not exist, and for a folder without pairs.
     """
     chosen = selection or Selection()
-    _require_known("pose", report.poses, (*POSES, ESTIMATED))
+    photographs = _photographs(report, data)
+    if photographs is not None:
+        report = report.model_copy(update={"pairs": tuple(_pair_names(photographs))})
+        for kind in ("scenes", "rigs"):
+            own = report.own_names[kind]
+            _require_known(kind[:-1], chosen_names(getattr(chosen, kind), own), own)
+    else:
+        _require_known("pose", report.poses, (*POSES, ESTIMATED))
     tasks: dict[Cell, CellTask] = {}
     for part in report.parts:
-        for task in _tasks_of(part, report, chosen):
+        for task in _tasks_of(part, report, chosen, photographs):
             rival = tasks.setdefault(task.cell, task)
             if rival is not task:
                 cell = f"{task.cell.method} on {task.cell.scene}, {task.cell.rig}"
@@ -161,10 +102,25 @@ def make_plan(report: Report, selection: Selection | None = None) -> Plan:
     if not tasks:
         raise InvalidInput(f"no cell of report {report.name} is selected; expected some of its names")
     _check_option_names(report, chosen, {cell.method for cell in tasks})
-    return Plan(report, chosen, tuple(_sharing_pairs(tasks.values())))
+    return Plan(report, chosen, tuple(_sharing_pairs(tasks.values())), photographs)
 
 
-def _tasks_of(part: Group, report: Report, chosen: Selection) -> Iterator[CellTask]:
+def _photographs(report: Report, data: str | Path | None) -> Photographs | None:
+    if report.photographs == (data is not None):
+        return None if data is None else find_photographs(data)
+    expected = "a folder of them, --data FOLDER" if report.photographs else "no --data"
+    takes = "takes photographs" if report.photographs else "renders its pairs"
+    raise InvalidInput(f"report {report.name} {takes}; expected {expected}")
+
+
+def _pair_names(photographs: Photographs) -> Iterator[PairName]:
+    for pair in photographs.pairs:
+        yield pair.name, pair.calibration.name, AS_CALIBRATED
+
+
+def _tasks_of(
+    part: Group, report: Report, chosen: Selection, photographs: Photographs | None
+) -> Iterator[CellTask]:
     """The cells of one part of a report, pair by pair."""
     names = _chosen_methods(part, report, chosen)
     if not names:
@@ -173,28 +129,19 @@ def _tasks_of(part: Group, report: Report, chosen: Selection) -> Iterator[CellTa
     option_sets = _option_sets({**report.options, **part.options}, chosen, [plugin for plugin, _ in methods])
     needs = frozenset().union(*(plugin.value.needs for plugin, _ in methods))
     pairs = _chosen_pairs(part, report, chosen)
-    scenes = {name: _plugins("scenes", [name])[0] for name in dict.fromkeys(scene for scene, _, _ in pairs)}
-    rigs = _rigs(dict.fromkeys(rig for _, rig, _ in pairs))
-    _require_known("motion", [motion for _, _, motion in pairs], MOTIONS)
-    for (scene, rig, motion), seed in itertools.product(pairs, _chosen_seeds(part, report, chosen)):
-        plugin, scene_source = scenes[scene]
-        rig_name, rig_source = rigs[rig]
-        pair = PairTask(
-            scene=plugin.name,
-            rig=rig_name,
-            motion=motion,
-            seed=seed,
-            scene_source=scene_source,
-            rig_source=rig_source,
-            image_width=report.image_width_of(part),
-            quality=report.quality,
-            spp=report.spp,
-            truth=report.needs_truth(part) or "matches" in needs,
-            images=report.needs_images(part) or "images" in needs,
-        )
+    seeds = _chosen_seeds(part, report, chosen)
+    images_wanted = report.needs_images(part) or "images" in needs
+    truth_wanted = report.needs_truth(part) or "matches" in needs
+    made: Iterator[AnyPair]
+    if photographs is None:
+        made = _rendered(pairs, seeds, report, part, truth=truth_wanted, images=images_wanted)
+    else:
+        made = _photographed(pairs, seeds, photographs)
+    for pair in made:
         for pose, (method, method_source) in itertools.product(report.poses, methods):
             for options in option_sets[method.name]:
-                identity = (pair.scene, pair.rig, motion, pose, method.name, canonical_json(options), seed)
+                words = canonical_json(options)
+                identity = (pair.scene, pair.rig, pair.motion, pose, method.name, words, pair.seed)
                 yield CellTask(
                     cell=Cell(report.name, *identity),
                     pair=pair,
@@ -208,15 +155,66 @@ def _tasks_of(part: Group, report: Report, chosen: Selection) -> Iterator[CellTa
                 )
 
 
+def _rendered(
+    pairs: list[PairName], seeds: Sequence[int], report: Report, part: Group, *, truth: bool, images: bool
+) -> Iterator[PairTask]:
+    """The pairs of a part that are rendered: each rig in its scene."""
+    scenes = {name: _plugins("scenes", [name])[0] for name in dict.fromkeys(scene for scene, _, _ in pairs)}
+    rigs = _rigs(dict.fromkeys(rig for _, rig, _ in pairs))
+    _require_known("motion", [motion for _, _, motion in pairs], MOTIONS)
+    for (scene, rig, motion), seed in itertools.product(pairs, seeds):
+        plugin, scene_source = scenes[scene]
+        rig_name, rig_source = rigs[rig]
+        yield PairTask(
+            scene=plugin.name,
+            rig=rig_name,
+            motion=motion,
+            seed=seed,
+            scene_source=scene_source,
+            rig_source=rig_source,
+            image_width=report.image_width_of(part),
+            quality=report.quality,
+            spp=report.spp,
+            truth=truth,
+            images=images,
+        )
+
+
+def _photographed(
+    pairs: list[PairName], seeds: Sequence[int], photographs: Photographs
+) -> Iterator[PhotoTask]:
+    """The pairs that were found in a folder."""
+    found = {(pair.name, pair.calibration.name): pair for pair in photographs.pairs}
+    for (scene, rig, motion), seed in itertools.product(pairs, seeds):
+        pair = found[scene, rig]
+        calibration = pair.calibration
+        yield PhotoTask(
+            scene=scene,
+            rig=rig,
+            motion=motion,
+            seed=seed,
+            left=str(pair.left),
+            right=str(pair.right),
+            calibration=tuple(map(str, calibration.files)),
+            size=calibration.size,
+            unit=calibration.unit,
+            max_angle_deg=calibration.max_angle_deg,
+        )
+
+
 def _sharing_pairs(tasks: Collection[CellTask]) -> Iterator[CellTask]:
     """The tasks, those of different parts on one pair sharing one task for it, so that it is made once."""
     wanted: dict[PairTask, PairTask] = {}
     for pair in (task.pair for task in tasks):
-        bare = replace(pair, truth=False, images=False)
-        known = wanted.get(bare, bare)
-        wanted[bare] = replace(bare, truth=pair.truth or known.truth, images=pair.images or known.images)
+        if isinstance(pair, PairTask):
+            bare = replace(pair, truth=False, images=False)
+            known = wanted.get(bare, bare)
+            wanted[bare] = replace(bare, truth=pair.truth or known.truth, images=pair.images or known.images)
     for task in tasks:
-        yield replace(task, pair=wanted[replace(task.pair, truth=False, images=False)])
+        pair = task.pair
+        if isinstance(pair, PairTask):
+            pair = wanted[replace(pair, truth=False, images=False)]
+        yield replace(task, pair=pair)
 
 
 def _chosen_methods(part: Group, report: Report, chosen: Selection) -> list[str]:

@@ -4,21 +4,29 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from rectbench.bench.cells import cell_inputs, problem_of
+import numpy as np
+
+from rectbench.bench.cells import cell_inputs, corners_of_board, feature_matches, problem_of
 from rectbench.bench.keys import digest
-from rectbench.bench.pairs import image_inputs, load_images, load_truth
-from rectbench.bench.planning import IDENTITY, CellTask
+from rectbench.bench.pairs import image_inputs, load_images, load_truth, placed_rig
 from rectbench.bench.plugins import registry
 from rectbench.bench.rectifying import checked_options, fit
 from rectbench.bench.run_folder import RUN_FILE
 from rectbench.bench.store import Store
-from rectbench.errors import InvalidInput
+from rectbench.bench.tasks import IDENTITY, CellTask, PhotoTask
+from rectbench.errors import InvalidInput, PoseNotFound
 from rectbench.rendering.images import StereoPair
 from rectbench.rendering.truth import Truth
-from rectbench.warps import Rectification
+from rectbench.rigs import Rig
+from rectbench.warps import Matches, Rectification
+
+SHOWN_MATCHES = 2000
+"""True correspondences that pictures choose from."""
 
 
 def read_tasks(run_dir: Path) -> dict[tuple[Any, ...], CellTask]:
@@ -36,10 +44,36 @@ def identity_of(row: Mapping[str, Any]) -> tuple[Any, ...]:
     return tuple(row[name] for name in IDENTITY)
 
 
-def recalled_pair(task: CellTask, store: Store | None = None) -> tuple[StereoPair, Truth]:
-    """The images and the truth of a cell; what the store has lost is rendered again."""
-    store = store or Store.default()
-    return load_images(task.pair, store), load_truth(task.pair, store)
+@dataclass(frozen=True, eq=False)
+class KnownPair:
+    """The images under a cell, and what is known of them."""
+
+    images: StereoPair
+    rig: Rig
+    """The true rig; of photographs the calibrated one."""
+    matches: Matches
+    """Pixels [N, 2] each that correspond: true ones, or of photographs those found in them."""
+    truth: Truth | None
+    """None of photographs."""
+
+
+def recalled_pair(task: CellTask, store: Store | None = None) -> KnownPair:
+    """The images of a cell and what is known of them; what the store has lost is rendered again."""
+    store, pair = store or Store.default(), task.pair
+    images = load_images(pair, store)
+    if isinstance(pair, PhotoTask):
+        return KnownPair(images, placed_rig(pair), _found_matches(pair, store), None)
+    truth = load_truth(pair, store)
+    return KnownPair(images, truth.rig, Matches(*truth.matches(SHOWN_MATCHES, seed=0)), truth)
+
+
+def _found_matches(pair: PhotoTask, store: Store) -> Matches:
+    """The matches that agree on a pose, and the corners of a board, as far as there are any."""
+    found = [] if (board := corners_of_board(pair, store)) is None else [board.matches]
+    with suppress(PoseNotFound):
+        found.append(feature_matches(pair, False, store))
+    sides = zip(*found, strict=True) if found else ([np.empty((0, 2))], [np.empty((0, 2))])
+    return Matches(*(np.concatenate(side) for side in sides))
 
 
 def recalled_rectification(task: CellTask, store: Store | None = None) -> Rectification:

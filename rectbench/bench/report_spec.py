@@ -11,10 +11,18 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_valida
 from rectbench.bench.claims import Claim
 
 Metric = Literal[
-    "distortion", "geometry", "row_error", "row_error_features", "reconstruction", "energy", "timing"
+    "distortion",
+    "geometry",
+    "row_error",
+    "row_error_features",
+    "row_error_board",
+    "reconstruction",
+    "energy",
+    "timing",
 ]
-"""Distortion at the grid alone; all of distortion, coverage and order; row error of the truth, and of SIFT
-matches in the images; depth from dense matching; the shape of the energy; times."""
+"""Distortion at the grid alone; all of distortion, coverage and order; row error of the truth, of SIFT
+matches in the images, and of a calibration board's corners where they show one; depth from dense matching;
+the shape of the energy; times."""
 Figures = Literal["bars", "scatter", "pairs", "maps", "energy", "starts", "squares", "clouds", "timing"]
 Names = Annotated[tuple[str, ...], Field(min_length=1)]
 Slug = Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9-]*$")]
@@ -30,10 +38,13 @@ def _one_set_is_a_list_of_one(options: Any) -> Any:
 
 OptionSets = Annotated[Mapping[str, tuple[dict[str, Any], ...]], BeforeValidator(_one_set_is_a_list_of_one)]
 
-IMAGE_METRICS = frozenset({"row_error_features", "reconstruction"})
+IMAGE_METRICS = frozenset({"row_error_features", "row_error_board", "reconstruction"})
+TRUTH_METRICS = frozenset({"row_error", "reconstruction"})
 IMAGE_FIGURES = frozenset({"pairs", "clouds"})
 ESTIMATED = "estimated"
 """The pose that is estimated from the images themselves."""
+CALIBRATED = "calibrated"
+"""The pose as a calibration states it, of which nobody knows how exact it is: that of photographs."""
 
 
 class Group(BaseModel):
@@ -43,9 +54,7 @@ class Group(BaseModel):
 
     name: Slug | Literal[""] = Field(description="Name in the rows and in the names of figures.")
     title: str = Field(default="", description="Heading of the part.")
-    pairs: Annotated[tuple[PairName, ...], Field(min_length=1)] = Field(
-        description="The pairs: (scene, rig, motion) each, by name or path."
-    )
+    pairs: tuple[PairName, ...] = Field(description="The pairs: (scene, rig, motion) each, by name or path.")
     methods: Names = Field(description="Rectifiers, by name or path.")
     options: OptionSets = Field(default_factory=dict, description="As a report's.")
     metrics: tuple[Metric, ...] | None = Field(default=None, description="In the place of the report's.")
@@ -65,8 +74,9 @@ class Report(BaseModel):
     """A report: every scene × rig × motion × pose × method × seed, each one row of its table.
 
     A file in `reports/` states one at its top level. Names may also be paths of plugin and rig
-    files. In the place of one grid a report may have `groups`, each with its own pairs and methods.
-    Raises pydantic's ValidationError for a field that cannot be used as given.
+    files. In the place of one grid a report may have `groups`, each with its own pairs and methods;
+    or it takes `photographs`, and its pairs are those of a folder that each run names. Raises
+    pydantic's ValidationError for a field that cannot be used as given.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -79,10 +89,18 @@ class Report(BaseModel):
     motions: Names = Field(default=("as-calibrated",), description="How the right camera stands to the left.")
     methods: tuple[str, ...] = Field(default=(), description="Rectifiers, by name or path.")
     groups: tuple[Group, ...] = Field(default=(), description="Parts, in the place of one grid.")
+    photographs: bool = Field(
+        default=False,
+        description="Whether the pairs are photographs, found in a folder that each run names; what is "
+        "measured then needs no truth.",
+    )
+    pairs: tuple[PairName, ...] = Field(
+        default=(), description="Pairs of (scene, rig, motion) in the place of scenes × rigs × motions."
+    )
     poses: Names = Field(
         default=("exact",),
         description="How well the rectifiers know the relative pose: exact, perturbed, or estimated from "
-        "the images.",
+        "the images. Of photographs: calibrated, or estimated.",
     )
     options: OptionSets = Field(
         default_factory=dict,
@@ -119,18 +137,39 @@ class Report(BaseModel):
 
     @model_validator(mode="after")
     def _is_one_grid_or_groups(self) -> Report:
-        grid = {"scenes": self.scenes, "rigs": self.rigs, "methods": self.methods}
-        if self.groups:
+        grid: dict[str, Any] = {"scenes": self.scenes, "rigs": self.rigs, "methods": self.methods}
+        if self.photographs:
+            grid |= {"pairs": self.pairs, "groups": self.groups}
+            stated = [name for name, values in grid.items() if values and name != "methods"]
+            if stated:
+                raise ValueError(f"{stated[0]} stand beside photographs; expected pairs found in a folder")
+            if not self.methods:
+                raise ValueError("methods are missing; expected at least one")
+        elif self.groups:
             stated = [name for name, values in {**grid, "options": self.options}.items() if values]
             if stated:
                 raise ValueError(f"{stated[0]} stand beside groups; expected them in the groups")
             names = [group.name for group in self.groups]
             if len(set(names)) < len(names) or "" in names:
                 raise ValueError(f"groups are called {', '.join(map(repr, names))}; expected a name each")
+            if empty := [group.name for group in self.groups if not group.pairs]:
+                raise ValueError(f"group '{empty[0]}' has no pairs; expected at least one")
+        elif self.pairs:
+            if self.scenes or self.rigs or not self.methods:
+                raise ValueError("expected methods beside pairs, and neither scenes nor rigs")
         else:
             missing = [name for name, values in grid.items() if not values]
             if missing:
                 raise ValueError(f"{missing[0]} are missing; expected at least one, or groups")
+        return self
+
+    @model_validator(mode="after")
+    def _photographs_have_no_truth(self) -> Report:
+        if self.photographs:
+            if asked := sorted(TRUTH_METRICS.intersection(self.metrics)):
+                raise ValueError(f"metric {asked[0]} needs the truth, which photographs have not")
+            if foreign := [pose for pose in self.poses if pose not in (CALIBRATED, ESTIMATED)]:
+                raise ValueError(f"pose of photographs is {foreign[0]}; expected {CALIBRATED} or {ESTIMATED}")
         return self
 
     @model_validator(mode="after")
@@ -155,7 +194,7 @@ class Report(BaseModel):
         """The groups; the grid of a report without groups as one group without a name."""
         if self.groups:
             return self.groups
-        pairs = tuple(itertools.product(self.scenes, self.rigs, self.motions))
+        pairs = self.pairs or tuple(itertools.product(self.scenes, self.rigs, self.motions))
         return (Group(name="", pairs=pairs, methods=self.methods, options=self.options),)
 
     @property
@@ -202,7 +241,7 @@ class Report(BaseModel):
 
     def needs_truth(self, part: Group) -> bool:
         """Whether any metric of a part asks for the truth."""
-        return not {"row_error", "reconstruction"}.isdisjoint(self.metrics_of(part))
+        return not TRUTH_METRICS.isdisjoint(self.metrics_of(part))
 
 
 def _distinct(names: Iterable[str]) -> tuple[str, ...]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import platform
+import shlex
 import subprocess
 import tempfile
 from collections.abc import Mapping, Sequence
@@ -17,7 +18,8 @@ import pandas as pd
 from rectbench import llvm
 from rectbench.bench.keys import PACKAGE, canonical_json, versions
 from rectbench.bench.outcomes import Outcome
-from rectbench.bench.planning import IDENTITY, Plan
+from rectbench.bench.planning import Plan
+from rectbench.bench.tasks import IDENTITY
 from rectbench.errors import InvalidInput, Unavailable
 
 RUN_FILE, PARQUET, CSV = "run.json", "results.parquet", "results.csv"
@@ -90,7 +92,34 @@ def facts_of(plan: Plan) -> dict[str, Any]:
         "is_whole": plan.is_whole,
         "spec": plan.report.model_dump(mode="json"),
         "figures": plan.report.figures,
+        **_photograph_facts(plan),
         "cells": [task.to_json() for task in plan.tasks],
+    }
+
+
+def _photograph_facts(plan: Plan) -> dict[str, Any]:
+    """The folder of a report of photographs: its pairs, what was assumed, and what was left out and why."""
+    found = plan.photographs
+    if found is None:
+        return {}
+    below = found.below
+    pairs = [
+        {
+            "name": pair.name,
+            "rig": pair.calibration.name,
+            "left": below(pair.left),
+            "right": below(pair.right),
+            "calibration": [below(file) for file in pair.calibration.files],
+        }
+        for pair in found.pairs
+    ]
+    return {
+        "data": str(found.folder),
+        "photographs": {
+            "pairs": pairs,
+            "remarks": {one.name: list(one.remarks) for one in found.calibrations if one.remarks},
+            "left_out": [{"path": below(out.path), "reason": out.reason} for out in found.left_out],
+        },
     }
 
 
@@ -184,6 +213,8 @@ def llvm_facts() -> dict[str, Any]:
 
 def _command(plan: Plan) -> str:
     words = ["rectbench", "run", plan.report.name]
+    if plan.photographs is not None:
+        words += ["--data", shlex.quote(str(plan.photographs.folder))]
     for name in ("methods", "scenes", "rigs", "seeds"):
         chosen = getattr(plan.selection, name)
         if chosen is not None:

@@ -14,13 +14,14 @@ import pandas as pd
 from rectbench.bench.cells import CELLS, cell_inputs, keep, run_cell, run_pair, stored_outcome
 from rectbench.bench.outcomes import Outcome
 from rectbench.bench.pairs import IMAGES, TRUTH, image_inputs, is_made, truth_inputs
-from rectbench.bench.planning import CellTask, PairTask, Plan, Selection, find_report, make_plan
+from rectbench.bench.planning import Plan, Selection, find_report, make_plan
 from rectbench.bench.plugins import is_path
 from rectbench.bench.pool import Job, Workers
 from rectbench.bench.progress import Progress, progress_for
 from rectbench.bench.report_spec import Report
 from rectbench.bench.run_folder import check_writable, facts_of, table_of, write_run
 from rectbench.bench.store import Store
+from rectbench.bench.tasks import CellTask, PairTask
 from rectbench.bench.worker import Limits
 from rectbench.errors import InvalidInput
 
@@ -47,6 +48,7 @@ def run(
     scenes: Sequence[str] | None = None,
     rigs: Sequence[str] | None = None,
     seeds: Sequence[int] | None = None,
+    data: str | Path | None = None,
     options: Mapping[str, Mapping[str, Any]] | None = None,
     jobs: int | None = None,
     dask: str | None = None,
@@ -61,6 +63,7 @@ def run(
     out : the run's folder; `runs/<report>` by default.
     methods, scenes, rigs, seeds : what to run in the place of the report's own; names or paths. A "+"
         before a name adds it to the report's own.
+    data : the folder of photographs, for a report that takes them.
     options : options by method and name, laid over the report's.
     jobs : worker processes; as many as there are cores by default. The rows do not hang on it.
     dask : address of a dask.distributed scheduler that runs the cells in the place of local workers.
@@ -72,7 +75,7 @@ def run(
     """
     begin = time.monotonic()
     selection = Selection(methods, scenes, rigs, seeds, options or {})
-    plan = make_plan(find_report(report), selection)
+    plan = make_plan(find_report(report), selection, data)
     count, folder = _checked_jobs(jobs), run_folder(plan.report, out)
     check_writable(folder)
     threads = max(1, (os.cpu_count() or 1) // count)
@@ -121,8 +124,9 @@ class _Runner:
         for task in self.plan.tasks:
             self.store.drop(self.store.place(CELLS, cell_inputs(task)))
         for pair in self.plan.pairs:
-            self.store.drop(self.store.place(TRUTH, truth_inputs(pair)))
-            self.store.drop(self.store.place(IMAGES, image_inputs(pair)))
+            if isinstance(pair, PairTask):
+                self.store.drop(self.store.place(TRUTH, truth_inputs(pair)))
+                self.store.drop(self.store.place(IMAGES, image_inputs(pair)))
 
     def outcomes(self, dask: str | None) -> list[Outcome]:
         """The outcome of each task, in the plan's order."""
@@ -163,7 +167,7 @@ class _Runner:
         wanted = dict.fromkeys(
             task.pair
             for task, outcome in zip(self.plan.tasks, found, strict=True)
-            if outcome is None or task.pair.images
+            if isinstance(task.pair, PairTask) and (outcome is None or task.pair.images)
         )
         missing = [pair for pair in wanted if not is_made(pair, self.store)]
         if not missing:

@@ -30,6 +30,9 @@ def run(
     seeds: Annotated[
         list[str] | None, typer.Option(metavar="NUMBERS", help="Likewise, such as 0,1,2.")
     ] = None,
+    data: Annotated[
+        Path | None, typer.Option(metavar="FOLDER", help="Photographs, for a report that takes them.")
+    ] = None,
     jobs: Annotated[int | None, typer.Option(help="Worker processes; one a core by default.")] = None,
     dask: Annotated[
         str | None, typer.Option(metavar="ADDRESS", help="Run on this dask scheduler's cluster.")
@@ -58,6 +61,7 @@ def run(
         "scenes": split_names(scenes),
         "rigs": split_names(rigs),
         "seeds": whole_numbers("seeds", seeds),
+        "data": data,
         "jobs": jobs,
         "dask": dask,
         "fresh": fresh,

@@ -1,5 +1,7 @@
 """Matches between images, and the geometry they determine."""
 
+from rectbench.matching.boards import BoardMatches, board_matches
+from rectbench.matching.consistent import agreeing_matches, consistent_matches
 from rectbench.matching.dense import Disparity, dense_disparity
 from rectbench.matching.features import match_features, sift_matches
 from rectbench.matching.fundamental import fundamental_matrix, sampson_residuals
@@ -9,9 +11,13 @@ from rectbench.matching.reconstruction import Reconstruction, reconstruct
 
 __all__ = [
     "MATCHERS",
+    "BoardMatches",
     "Disparity",
     "PoseEstimate",
     "Reconstruction",
+    "agreeing_matches",
+    "board_matches",
+    "consistent_matches",
     "dense_disparity",
     "fundamental_matrix",
     "match_features",

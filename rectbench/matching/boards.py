@@ -8,7 +8,7 @@ chessboard corners, only where the search starts here, are off by up to half a p
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import cv2
@@ -18,6 +18,7 @@ from scipy.spatial import cKDTree
 
 from rectbench.cameras.arrays import FloatArray
 from rectbench.matching.images import Grey, grey8
+from rectbench.matching.saddles import levels_at, refined_saddles
 from rectbench.matching.tags import tags
 from rectbench.warps import Matches
 
@@ -27,9 +28,9 @@ NEIGHBOURS, AGREEMENT_STEPS = 12, 10
 """Corners about a tag's corner that say where it should be, and steps of the robust fit to them."""
 AGREEING_PX, WITHIN_MEDIANS = 0.5, 4.0
 """A corner farther off than both, the latter times the median, is not the same in both images."""
-BEGINNINGS = ((4, 4), (6, 5), (3, 3))
+BEGINNINGS = ((4, 4), (6, 5))
 """Grids of corners that the search begins with, each in its turn: of a bent board OpenCV misorders some."""
-LEAST_CORNERS = 15
+LEAST_CORNERS = 20
 """Corners on a chessboard; smaller grids are found in gravel and foliage."""
 SEARCHED_PIXELS = 1_000_000
 """A chessboard is searched for on an image of so many pixels; its corners are refined on the image itself."""
@@ -46,11 +47,8 @@ GOES_ON = 0.5
 """Of the contrast, from which on what is there goes on alternating: the board is cut off."""
 UPRIGHT_DEG = 60.0
 """Where a board looks the same upside down, the images may be turned against each other by so much."""
-CHESSBOARD_WINDOW, TAG_WINDOW = 0.3, 0.1
-"""Half the window in which a corner is refined, as a share of the shortest side of a square, or of a tag."""
-LEAST_WINDOW, MOST_WINDOW = 2, 10
-"""Bounds of it, px."""
-STEPS = (cv2.TERM_CRITERIA_EPS | cv2.TERM_CRITERIA_COUNT, 60, 1e-4)
+WINDOW, LEAST_WINDOW, MOST_WINDOW = 0.3, 2, 10
+"""Half the window in which a corner is refined: a share of the shortest square's side, and px."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,10 +84,9 @@ def _tag_matches(left: Grey, right: Grey) -> BoardMatches | None:
         common = sorted(seen.keys() & others.keys())
         if len(common) < LEAST_TAGS:
             continue
-        corners = (_stacked(seen, common), _stacked(others, common))
-        refined = [_refined(*of_image, TAG_WINDOW) for of_image in zip((left, right), corners, strict=True)]
-        sharp = np.isfinite(refined[0]).all(axis=-1) & np.isfinite(refined[1]).all(axis=-1)
-        matches = _agreeing(Matches(refined[0][sharp], refined[1][sharp]))
+        corners = [np.stack([tag[one] for one in common]).reshape(-1, 2) for tag in (seen, others)]
+        found = np.isfinite(corners).all(axis=(0, 2))
+        matches = _agreeing(Matches(corners[0][found], corners[1][found]))
         if best is None or len(matches.left) > len(best.matches.left):
             best = BoardMatches(matches, f"{family}, {len(common)} tags")
     return best
@@ -115,11 +112,6 @@ def _agreeing(matches: Matches) -> Matches:
     off_px = np.linalg.norm(fit[:, 2], axis=-1)
     kept = off_px <= max(AGREEING_PX, WITHIN_MEDIANS * float(np.median(off_px)))
     return Matches(matches.left[kept], matches.right[kept])
-
-
-def _stacked(seen: Mapping[int, FloatArray], ids: list[int]) -> FloatArray:
-    """The corners [len(ids), 4, 2] of these tags."""
-    return np.stack([seen[one] for one in ids])
 
 
 @dataclass(frozen=True, eq=False)
@@ -184,7 +176,7 @@ def _whole_board(image: Grey, grid: FloatArray) -> _Chessboard | None:
     step_right, step_down = (np.diff(grid, axis=axis).mean(axis=(0, 1)) for axis in (1, 0))
     if step_right[0] * step_down[1] < step_right[1] * step_down[0]:
         grid = grid.swapaxes(0, 1)
-    grid = _refined(image, grid, CHESSBOARD_WINDOW)
+    grid = _refined(image, grid)
     if not np.isfinite(grid).all():
         return None
     grid = _grown(image, grid)
@@ -208,14 +200,14 @@ def _next_row(image: Grey, blurred: Grey, grid: FloatArray) -> FloatArray | None
     height, width = image.shape
     if not np.isfinite(guess).all() or guess.min() < 1 or (guess > [width - 2, height - 2]).any():
         return None
-    row = _refined(image, guess[None], CHESSBOARD_WINDOW)[0]
+    row = _refined(image, guess[None])[0]
     back, along = row - grid[0], np.gradient(row, axis=0)
     shortest = min(np.linalg.norm(back, axis=-1).min(), np.linalg.norm(along, axis=-1).min())
     if not np.linalg.norm(row - guess, axis=-1).max() <= NEAR_GUESS * shortest:
         return None
     rising, falling = (
         np.stack(
-            [_levels(blurred, row + WITHIN_SQUARE * (end * along + tilt * end * back)) for end in (-1, 1)]
+            [levels_at(blurred, row + WITHIN_SQUARE * (end * along + tilt * end * back)) for end in (-1, 1)]
         )
         for tilt in (1, -1)
     )
@@ -238,7 +230,7 @@ def _alternation(image: Grey, grid: FloatArray) -> int:
     rows, columns = (length - 1 for length in ringed.shape[:2])
     signs = (-1.0) ** np.add.outer(np.arange(rows), np.arange(columns))
     blurred = cv2.blur(image, (3, 3))
-    grey = _levels(blurred, (ringed[:-1, :-1] + ringed[1:, :-1] + ringed[:-1, 1:] + ringed[1:, 1:]) / 4)
+    grey = levels_at(blurred, (ringed[:-1, :-1] + ringed[1:, :-1] + ringed[:-1, 1:] + ringed[1:, 1:]) / 4)
     if not np.isfinite(grey).all():
         return 0
     padded = np.pad(grey, 1, mode="reflect")
@@ -254,7 +246,7 @@ def _alternation(image: Grey, grid: FloatArray) -> int:
     for side in range(4):
         turned, sign = np.rot90(ringed, side), np.rot90(signs, side)[0]
         beyond = turned[0] + RIM * (turned[0] - turned[1])
-        outside = _levels(blurred, (beyond[:-1] + beyond[1:]) / 2)
+        outside = levels_at(blurred, (beyond[:-1] + beyond[1:]) / 2)
         if not np.isfinite(outside).all():
             return 0
         going_on = -np.mean(sign * (outside - outside.mean())) / (median / 2)
@@ -270,24 +262,7 @@ def _with_ring(grid: FloatArray) -> FloatArray:
     return ringed
 
 
-def _levels(image: Grey, pixels: FloatArray) -> FloatArray:
-    """Grey levels [...] of the nearest pixels [..., 2]; NaN outside of the image."""
-    column, row = np.moveaxis(np.rint(pixels).astype(np.intp), -1, 0)
-    height, width = image.shape
-    inside = (column >= 0) & (column < width) & (row >= 0) & (row < height)
-    levels: FloatArray = np.where(
-        inside, image[row.clip(0, height - 1), column.clip(0, width - 1)].astype(float), np.nan
-    )
-    return levels
-
-
-def _refined(image: Grey, corners: FloatArray, window: float) -> FloatArray:
+def _refined(image: Grey, corners: FloatArray) -> FloatArray:
     """Corners [R, C, 2], neighbours along C, to a fraction of a pixel; NaN where there is none."""
     shortest = float(np.linalg.norm(np.diff(corners, axis=1), axis=-1).min())
-    half = int(np.clip(window * shortest, LEAST_WINDOW, MOST_WINDOW))
-    start = corners.reshape(-1, 1, 2).astype(np.float32)
-    found = cv2.cornerSubPix(image, start.copy(), (half, half), (-1, -1), STEPS)
-    # A search that leaves its window is put back to where it started.
-    found = np.where((found == start).all(axis=-1, keepdims=True), np.nan, found)
-    refined: FloatArray = found.astype(np.float64).reshape(corners.shape)
-    return refined
+    return refined_saddles(image, corners, int(np.clip(WINDOW * shortest, LEAST_WINDOW, MOST_WINDOW)))

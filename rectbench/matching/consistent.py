@@ -9,7 +9,13 @@ from rectbench.errors import PoseNotFound
 from rectbench.matching.epipolar import Pose, RayMatches, essential, possible, sampson_px
 from rectbench.matching.evidence import accompanied
 from rectbench.matching.features import match_features
-from rectbench.matching.pose import FINEST_PX, LEAST_MATCHES, WITHIN_DEVIATIONS, pose_from_images
+from rectbench.matching.pose import (
+    FINEST_PX,
+    LEAST_MATCHES,
+    WITHIN_DEVIATIONS,
+    PoseEstimate,
+    pose_from_images,
+)
 from rectbench.warps import Images, Matches
 
 WORKING_PIXELS = 2_100_000
@@ -22,15 +28,21 @@ def consistent_matches(left: Camera, right: Camera, images: Images, *, seed: int
     """SIFT matches [N, 2] each that agree with one another on the pose found in the images themselves.
 
     Of the calibration only the cameras are used. A wrong pose in it filters nothing away, so that the row
-    error it causes can be measured with these matches. They lie within four times the found pose's own
-    noise, ahead of both cameras, near others of a like distance. What a wrong lens does they still show,
-    as far as no pose makes up for it. Raises InvalidInput and PoseNotFound as `pose_from_images` does.
+    error it causes can be measured with these matches; a wrong lens shows as far as no pose makes up for
+    it. Raises InvalidInput and PoseNotFound as `pose_from_images` does.
     """
-    found = pose_from_images(left, right, images, seed=seed)
-    pose = Pose(found.R_right_left, found.direction_right_left)
+    return agreeing_matches(pose_from_images(left, right, images, seed=seed), left, right, images)
+
+
+def agreeing_matches(estimate: PoseEstimate, left: Camera, right: Camera, images: Images) -> Matches:
+    """SIFT matches [N, 2] each within four times the noise of a pose that was found in the same images.
+
+    They lie ahead of both cameras, each near others of a like distance. Raises PoseNotFound for too few.
+    """
+    pose = Pose(estimate.R_right_left, estimate.direction_right_left)
     matches = match_features(*images, working_pixels=WORKING_PIXELS, per_cell=PER_CELL)
     seen, _ = RayMatches.of(left, right, matches)
-    limit_px = WITHIN_DEVIATIONS * max(found.noise_px, FINEST_PX)
+    limit_px = WITHIN_DEVIATIONS * max(estimate.noise_px, FINEST_PX)
     near = np.abs(sampson_px(seen.terms(), essential(pose))[0]) <= limit_px
     kept = seen[near & possible(pose, seen, limit_px)]
     kept = kept[accompanied(pose, kept, limit_px)]

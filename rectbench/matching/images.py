@@ -1,4 +1,4 @@
-"""Photographs as they come, and the 8-bit grey that feature detectors take."""
+"""Photographs as they come, the 8-bit grey that feature detectors take, and 8 bits of RGB."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from rectbench.errors import InvalidInput
 from rectbench.warps import Images
 
 Grey = NDArray[np.uint8]
+Rgb = NDArray[np.uint8]
 
 BLACK_TO_WHITE = (0.1, 99.8)
 """Percentiles that become black and white where an image is not of 8 bits: a 12-bit sensor fills a
@@ -32,6 +33,23 @@ def grey8(image: NDArray[np.generic], side: str = "") -> Grey:
     8-bit values stay what they are; of others the range that the image fills is stretched. `side`
     names the image in the InvalidInput that another shape, or an image of no numbers, raises.
     """
+    pixels = _checked(image, side)
+    channels = pixels.shape[2]
+    if channels >= 3:
+        grey = cv2.cvtColor(pixels, cv2.COLOR_RGB2GRAY if channels == 3 else cv2.COLOR_RGBA2GRAY)
+    else:
+        grey = pixels[:, :, 0]
+    return _stretched(grey)
+
+
+def rgb8(image: NDArray[np.generic], side: str = "") -> Rgb:
+    """An image as `grey8` takes it, as uint8 [H, W, 3]; of other than 8 bits its range is stretched alike."""
+    pixels = _checked(image, side)
+    return _stretched(pixels[:, :, :3] if pixels.shape[2] >= 3 else np.repeat(pixels[:, :, :1], 3, axis=2))
+
+
+def _checked(image: NDArray[np.generic], side: str) -> NDArray[Any]:
+    """The pixels [H, W, C] as uint8 or float32; InvalidInput, by the side's name, for what is no image."""
     pixels = np.asarray(image)
     name = f"the {side} image" if side else "the image"
     channels = pixels.shape[2] if pixels.ndim == 3 else 1
@@ -41,23 +59,19 @@ def grey8(image: NDArray[np.generic], side: str = "") -> Grey:
         raise InvalidInput(f"{name} holds {pixels.dtype}; expected numbers")
     if pixels.dtype != np.uint8:
         pixels = pixels.astype(np.float32)
-    pixels = np.ascontiguousarray(pixels)
-    if channels >= 3:
-        grey = cv2.cvtColor(pixels, cv2.COLOR_RGB2GRAY if channels == 3 else cv2.COLOR_RGBA2GRAY)
-    else:
-        grey = pixels.reshape(*pixels.shape[:2], channels)[:, :, 0]
-    return _stretched(grey)
+    return np.ascontiguousarray(pixels).reshape(*pixels.shape[:2], channels)
 
 
-def _stretched(grey: NDArray[Any]) -> Grey:
-    if grey.dtype == np.uint8:
-        return np.ascontiguousarray(grey)
-    finite = grey[np.isfinite(grey)]
+def _stretched(pixels: NDArray[Any]) -> NDArray[np.uint8]:
+    """Of 8 bits what it is; of others black and white by `BLACK_TO_WHITE`, the same of all channels."""
+    if pixels.dtype == np.uint8:
+        return np.ascontiguousarray(pixels)
+    finite = pixels[np.isfinite(pixels)]
     black, white = np.percentile(finite, BLACK_TO_WHITE) if finite.size else (0.0, 0.0)
     if not white > black:
-        return np.zeros(grey.shape, np.uint8)
-    levels = np.nan_to_num((grey - black) * (255 / (white - black)), posinf=255)
-    stretched: Grey = np.clip(np.rint(levels), 0, 255).astype(np.uint8)
+        return np.zeros(pixels.shape, np.uint8)
+    levels = np.nan_to_num((pixels - black) * (255 / (white - black)), posinf=255)
+    stretched: NDArray[np.uint8] = np.clip(np.rint(levels), 0, 255).astype(np.uint8)
     return stretched
 
 

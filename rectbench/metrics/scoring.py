@@ -11,6 +11,9 @@ from rectbench.metrics.sampling import every_pixel
 from rectbench.rigs import Rig
 from rectbench.warps import Matches, Rectification
 
+BOARD_ERRORS = ("mean", "median", "p95", "source_mean")
+"""What is told of the row errors of a board's corners."""
+
 
 def measure(
     rect: Rectification,
@@ -19,6 +22,7 @@ def measure(
     geometry: bool = True,
     true_matches: Matches | None = None,
     feature_matches: Matches | None = None,
+    board_matches: Matches | None = None,
 ) -> dict[str, float]:
     """The metric columns of a row.
 
@@ -29,14 +33,24 @@ def measure(
     geometry : whether to score distortion, sampling, coverage and order, which need no match.
     true_matches : exact correspondences, unoccluded in both images.
     feature_matches : correspondences found in the images; scored apart.
+    board_matches : corners of a calibration board found in them; scored apart.
     """
     row: dict[str, float] = {}
     if true_matches is not None:
         row |= row_error(rect, *true_matches).columns()
     if feature_matches is not None:
         features = row_error(rect, *feature_matches).columns()
-        names = ("row_error_mean_px", "row_error_median_px", "row_error_matches")
+        names = (
+            "row_error_mean_px",
+            "row_error_median_px",
+            "row_error_source_mean_px",
+            "row_error_matches",
+        )
         row |= {name.replace("row_error", "row_error_features"): features[name] for name in names}
+    if board_matches is not None:
+        board = row_error(rect, *board_matches).columns()
+        row |= {f"row_error_board_{name}_px": board[f"row_error_{name}_px"] for name in BOARD_ERRORS}
+        row["row_error_board_points"] = board["row_error_matches"]
     return row | _geometry(rect, rig) if geometry else row
 
 

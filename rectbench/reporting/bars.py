@@ -100,12 +100,18 @@ def pair_chart(
                     for method in run.methods
                 }
                 for place, label in labels.items()
+                if not _is_not_to_be_had(run.select(results, place=place), key)
             }
     floor = max(column(key).floor for key in titles)
     linear = frozenset(titles[key] for key in bounded if titles[key] in panels)
     if len(linear) == len(panels):
         linear = frozenset()  # no others to set them apart from
     return BarChart(label, floor, reference, run.methods, panels, linear=linear)
+
+
+def _is_not_to_be_had(results: Sequence[Result], key: str) -> bool:
+    """Whether a pair has no such number though nothing failed, as one without a board has no board's."""
+    return all(r.ok and key not in r.metrics for r in results)
 
 
 def stage_chart(run: Run, stages: Mapping[str, str], stated: Mapping[str, float]) -> BarChart:

@@ -1,4 +1,4 @@
-"""Two views of what is reconstructed through each method's rectification, beside the truth."""
+"""Two views of what is reconstructed through each method's rectification, and of the truth if it is known."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rectbench.cameras.arrays import FloatArray
 from rectbench.rendering.images import StereoPair
 from rectbench.rendering.truth import Truth
 from rectbench.reporting.columns import column
@@ -15,7 +16,7 @@ from rectbench.reporting.panels import fit_into_box, panel_grid, write_head, wri
 from rectbench.reporting.run_folder import Result
 from rectbench.reporting.sources import Sources, attempted
 from rectbench.reporting.style import looks
-from rectbench.reporting.views import Patches, Picture, View, patches_of, splat, two_views
+from rectbench.reporting.views import Floats, Patches, Picture, View, patches_of, splat, two_views
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -29,28 +30,45 @@ _BORDER = "#bbbbbb"
 
 
 def draw_clouds(sources: Sources, results: Sequence[Result], methods: Sequence[str]) -> Figure:
-    """A row the truth and a row a method: seen from beside the cameras, and from above."""
-    pair, truth = sources.pair(results[0])
-    # Viewpoints made from the truth alone, so that all methods are seen alike.
-    views = two_views(truth.points_left[truth.visible_left], SIZE)
-    figure, axes = panel_grid(2 * len(results) + 2, 2, SIZE[1] / SIZE[0])
+    """A row the truth, if it is known, and a row a method: seen from beside the cameras, and from above."""
+    known = sources.pair(results[0])
+    clouds = [
+        (r, attempted(r, lambda r=r: _reconstructed(sources, r)))  # type: ignore[misc]
+        for r in results
+    ]
+    # All are seen alike: from viewpoints made from the truth, else from what they show together.
+    points: FloatArray | Floats
+    if known.truth is not None:
+        points = known.truth.points_left[known.truth.visible_left]
+    else:
+        points = _together([patches for _, patches in clouds if not isinstance(patches, str)])
+    views = two_views(points, SIZE)
+    heads = 0 if known.truth is None else 2
+    figure, axes = panel_grid(2 * len(results) + heads, 2, SIZE[1] / SIZE[0])
     colours = looks(methods)
-    _draw_row(axes[:2], _pictures(_true_patches(pair, truth), views))
-    _write_heads(axes[:2], "truth", "the left image at its depth")
-    for i, result in enumerate(results, 1):
-        row = axes[2 * i : 2 * i + 2]
-        _draw_row(row, attempted(result, lambda r=result: _reconstructed(sources, r, views)))  # type: ignore[misc]
+    if known.truth is not None:
+        _draw_row(axes[:2], _pictures(_true_patches(known.images, known.truth), views))
+        _write_heads(axes[:2], "truth", "the left image at its depth")
+    for i, (result, patches) in enumerate(clouds):
+        row = axes[heads + 2 * i : heads + 2 * i + 2]
+        _draw_row(row, patches if isinstance(patches, str) else _pictures(patches, views))
         _write_heads(row, result.method, _note(result), colours[result.method][0])
     return figure
+
+
+def _together(clouds: Sequence[Patches]) -> Floats:
+    """The points [N, 3] of all methods, N at least 1."""
+    points = [patches.points for patches in clouds if len(patches.points)]
+    return np.concatenate(points) if points else np.array([[0.0, 0.0, 1.0]], np.float32)
 
 
 def _true_patches(pair: StereoPair, truth: Truth) -> Patches:
     return patches_of(np.where(truth.visible_left[..., None], truth.points_left, np.nan), pair.left)
 
 
-def _reconstructed(sources: Sources, result: Result, views: Sequence[View]) -> list[Picture]:
+def _reconstructed(sources: Sources, result: Result) -> Patches:
     cloud = sources.reconstruction(result)
-    return _pictures(patches_of(cloud.points, cloud.colours), views)
+    return patches_of(cloud.points, cloud.colours)
 
 
 def _pictures(patches: Patches, views: Sequence[View]) -> list[Picture]:

@@ -93,11 +93,30 @@ METRICS: tuple[Column, ...] = (
     _pixels("row_error_source_p95_px", "row error, source, p95", "95th percentile of those."),
     _count("row_error_matches", "correspondences", "True correspondences that the row error is taken over."),
     _pixels(
+        "row_error_board_mean_px",
+        "row error, board",
+        "Mean row error of a calibration board's corners, where both images show one: exact to some "
+        "hundredths of a pixel, and the measure to trust where nobody knows the truth.",
+    ),
+    _pixels("row_error_board_median_px", "row error, board, median", "Median row error of these corners."),
+    _pixels("row_error_board_p95_px", "row error, board, p95", "95th percentile of the same."),
+    _pixels(
+        "row_error_board_source_mean_px",
+        "row error, board, source",
+        "The same mean in pixels of the source images.",
+    ),
+    _count("row_error_board_points", "board corners", "Corners of a board that the row error is taken over."),
+    _pixels(
         "row_error_features_mean_px",
         "row error, SIFT",
         "Mean row error of SIFT matches found in the images; it holds the detector's own noise.",
     ),
     _pixels("row_error_features_median_px", "row error, SIFT, median", "Median row error of SIFT matches."),
+    _pixels(
+        "row_error_features_source_mean_px",
+        "row error, SIFT, source",
+        "Mean row error of SIFT matches in pixels of the source images.",
+    ),
     _count("row_error_features_matches", "SIFT matches", "SIFT matches that their row error is taken over."),
     _distortion(
         "log_distortion",
@@ -210,6 +229,20 @@ METRICS: tuple[Column, ...] = (
         "Angle between the estimated direction of the baseline and the true one.",
     ),
     Column("pose_direction_sigma_deg", "direction σ", "°", None, "What the estimate believes of that."),
+    Column(
+        "pose_rotation_difference_deg",
+        "rotation, difference",
+        "°",
+        None,
+        "Angle between the relative rotation that the images tell and the calibration's.",
+    ),
+    Column(
+        "pose_direction_difference_deg",
+        "direction, difference",
+        "°",
+        None,
+        "Angle between the baseline's direction that the images tell and the calibration's.",
+    ),
     _count("pose_matches", "matches", "Matches that the pose was looked for in."),
     _count("pose_inliers", "inliers", "Matches that agree with the estimated pose."),
     _share("reconstruction_density", "density", "higher", "Share of source pixels that get any depth."),
@@ -276,6 +309,23 @@ MAIN_KEYS = (
 )
 """Columns of the main table."""
 
+PHOTOGRAPH_KEYS = (
+    "log_distortion",
+    "distortion_native",
+    "distortion_rescaled",
+    "distortion_stretched",
+    "row_error_board_mean_px",
+    "row_error_board_source_mean_px",
+    "row_error_features_mean_px",
+    "row_error_features_source_mean_px",
+    "coverage_pixels",
+    "coverage_solid_angle",
+    "sampling_lost",
+    "fit_s",
+    "maps_s",
+)
+"""Columns of the main table where the images are photographs."""
+
 DISTORTION_KEYS = (
     "log_distortion",
     "log_distortion_area",
@@ -300,6 +350,7 @@ PROTOCOLS = {
 """The ways to compare L, and what each is called above a panel."""
 
 ROW_ERRORS = {
+    "row_error_board_mean_px": "of a board's corners",
     "row_error_features_mean_px": "of SIFT matches",
     "row_error_mean_px": "of true correspondences",
 }
@@ -307,15 +358,24 @@ ROW_ERRORS = {
 
 POSE_KEYS = (
     "pose_rotation_error_deg",
+    "pose_rotation_difference_deg",
     "pose_rotation_sigma_deg",
     "pose_direction_error_deg",
+    "pose_direction_difference_deg",
     "pose_direction_sigma_deg",
     "pose_matches",
     "pose_inliers",
 )
 ROW_KEYS = (
+    "row_error_board_mean_px",
+    "row_error_board_median_px",
+    "row_error_board_p95_px",
+    "row_error_board_source_mean_px",
+    "row_error_board_points",
     "row_error_features_mean_px",
     "row_error_features_median_px",
+    "row_error_features_source_mean_px",
+    "row_error_features_matches",
     "row_error_mean_px",
     "row_error_median_px",
     "row_error_p95_px",

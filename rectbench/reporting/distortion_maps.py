@@ -48,15 +48,15 @@ def draw_distortion_maps(sources: Sources, results: Sequence[Result], methods: S
     from matplotlib.colors import LogNorm
     from matplotlib.patches import Patch
 
-    _, truth = sources.pair(results[0])
+    rig = sources.pair(results[0]).rig
     panels = [
-        (r, attempted(r, lambda r=r: _maps(sources, r, truth.rig)))  # type: ignore[misc]
+        (r, attempted(r, lambda r=r: _maps(sources, r, rig)))  # type: ignore[misc]
         for r in results
     ]
     shown = [m for _, maps in panels if not isinstance(maps, str) for m in maps]
     bottom, top = _limits(shown)
     norm = LogNorm(bottom, top)
-    camera = truth.rig.left
+    camera = rig.left
     figure, axes = panel_grid(len(panels), 3, camera.height / ((2 + _GAP) * camera.width), _BAR_INCHES)
     colours = looks(methods)
     for ax, (result, maps) in zip(axes, panels, strict=True):

@@ -48,7 +48,7 @@ def _part_plans(part: Run, run: Run, sources: Sources) -> Iterator[Plan]:
 
 
 def _bar_plans(run: Run) -> Iterator[Plan]:
-    if run.group:
+    if run.group or run.is_of_photographs:
         yield from _pair_bar_plans(run)
         return
     if "row_error_mean_px" in run.metrics:
@@ -75,7 +75,9 @@ def _pair_bar_plans(run: Run) -> Iterator[Plan]:
         for pose in run.noisy_poses:
             chart = pair_chart(run, "row error [px]", ROW_ERRORS, pose, reference=1.0)
             name = named(run, "row-error", pose if len(run.noisy_poses) > 1 else "")
-            caption = "Mean row error on each pair, measured in the images and against the truth."
+            caption = "Mean row error on each pair, measured in the images" + (
+                "." if run.is_of_photographs else " and against the truth."
+            )
             yield _bars(run, chart, name, f"Row error, {pose} pose", caption)
     pose = run.geometric_pose
     if any(key in run.metrics for key in PROTOCOLS):
@@ -158,6 +160,8 @@ class Picture:
     caption: str
     draw: Callable[[Sources, tuple[Result, ...], Run], Figure]
     dpi: int = 160
+    of_photographs: str = ""
+    """The caption where the pair is photographs, if it is another one."""
     shown_as: str = "png"
 
     def plan(self, run: Run, sources: Sources, results: tuple[Result, ...]) -> Plan:
@@ -167,7 +171,7 @@ class Picture:
             named(run, self.stem, pair.rig),
             self.kind,
             f"{self.title}, {pair.rig}",
-            f"Scene {pair.scene}, rig {pair.rig}, {pair.motion}, {pair.pose} pose. {self.caption}",
+            f"{_pair_words(run, pair)}, {pair.pose} pose. {self._caption(run)}",
             [[dict(r.row) for r in results], sources.version(pair)],
             lambda: self.draw(sources, results, run),
             dpi=self.dpi,
@@ -175,17 +179,32 @@ class Picture:
             part=run.group,
         )
 
+    def _caption(self, run: Run) -> str:
+        return self.of_photographs if run.is_of_photographs and self.of_photographs else self.caption
+
+
+def _pair_words(run: Run, pair: Result) -> str:
+    """What the picture's pair is called."""
+    if run.is_of_photographs:
+        return f"Pair {pair.scene}, rig {pair.rig}"
+    return f"Scene {pair.scene}, rig {pair.rig}, {pair.motion}"
+
+
+_LINES = (
+    "on a rectified pair both rings lie on the line, and both boxes between the dashed ones. Each pair is "
+    "fitted to its panel: sizes do not compare from one method to the next."
+)
 
 PICTURES = (
     Picture(
         "pairs",
         "rectified",
         "Rectified pairs",
-        "Scan lines run through true correspondences (rings): on a rectified pair both rings lie on the "
-        "line, and both boxes between the dashed ones. Each pair is fitted to its panel: sizes do not "
-        "compare from one method to the next.",
+        f"Scan lines run through true correspondences (rings): {_LINES}",
         lambda sources, results, run: draw_rectified(sources, results, run.methods),
         dpi=PIXELS_PER_INCH,
+        of_photographs="Scan lines run through matches found in the images and corners of a board, if they "
+        f"show one (rings): {_LINES}",
     ),
     Picture(
         "maps",

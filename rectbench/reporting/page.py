@@ -34,6 +34,7 @@ TOPICS = (
     ("reconstruction", "Reconstruction", ("depth",), ("clouds",)),
     ("time", "Time", ("time",), ("timing",)),
     ("pairs", "Every pair", ("pair",), ()),
+    ("photographs", "Photographs", ("photographs", "left-out"), ()),
 )
 """What a part of the page is divided into: name, title, kinds of tables, kinds of figures."""
 
@@ -69,6 +70,7 @@ class Page:
     cells: int
     failed: int
     scenes: tuple[str, ...]
+    scenes_called: str
     rigs: tuple[str, ...]
     methods: tuple[str, ...]
     poses: tuple[str, ...]
@@ -106,6 +108,7 @@ def render_page(run: Run, tables: Sequence[Table], drawn: Sequence[Drawn]) -> st
         cells=len(run.results),
         failed=len(run.failures),
         scenes=run.scenes,
+        scenes_called="pairs" if run.is_of_photographs else "scenes",
         rigs=run.rigs,
         methods=_methods(run),
         poses=run.poses,

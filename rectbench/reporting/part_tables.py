@@ -13,6 +13,7 @@ from rectbench.reporting.claims_tables import claims_tables
 from rectbench.reporting.columns import DEPTH_KEYS, POSE_KEYS, ROW_KEYS, STAGES, Column, column
 from rectbench.reporting.labels import one_line, pair_labels
 from rectbench.reporting.numbers import MISSING, three_digits
+from rectbench.reporting.photograph_tables import photograph_tables
 from rectbench.reporting.run_facts import stated_seconds, wanted_kinds
 from rectbench.reporting.run_folder import Result, Run
 from rectbench.reporting.starts import SAME_MINIMUM, Starts, start_study, study_method
@@ -39,6 +40,7 @@ _SAME_PLACE = 1e-6
 def all_tables(run: Run) -> Iterator[Table]:
     """Every table of the run: claims, then part by part, then what failed."""
     yield from claims_tables(run)
+    yield from photograph_tables(run)
     for part in run.parts:
         if methods := methods_part(part):
             yield from _methods_tables(methods)
@@ -52,7 +54,9 @@ def _methods_tables(part: Run) -> Iterator[Table]:
     if is_ranked(part):
         yield from main_tables(part)
         yield distortion_table(part)
-    if part.group and _measures(part, ROW_KEYS):
+    if part.is_of_photographs and _measures(part, ROW_KEYS):
+        yield from photographs_row_tables(part)
+    elif part.group and _measures(part, ROW_KEYS):
         yield rows_table(part)
     if _measures(part, POSE_KEYS):
         yield pose_table(part)
@@ -79,6 +83,20 @@ def rows_table(run: Run) -> Table:
         caption="Of SIFT matches within 3 px of the pose's epipolar planes, and of true correspondences; "
         f"{run.noisy_poses[0]} pose, averages over seeds.",
     )
+
+
+def photographs_row_tables(run: Run) -> Iterator[Table]:
+    """Row error under each pose, of what was found in the images, over all pairs and on each."""
+    for pose in run.poses:
+        yield replace(
+            _by_pair(run, ROW_KEYS, pose),
+            kind="rows",
+            name=named(run, "row-error", pose),
+            title=titled(run, f"Row error under the {pose} pose"),
+            caption="Of the corners of a calibration board, the measure to trust, where both images show "
+            "one; and of SIFT matches that agree with one another on the pose in the images, whatever the "
+            "calibration says.",
+        )
 
 
 def depth_table(run: Run) -> Table:
@@ -125,8 +143,8 @@ def pose_table(run: Run) -> Table:
         part=run.group,
         name=named(run, "pose"),
         title=titled(run, "Poses estimated from the images"),
-        caption="Against the true pose; averages over seeds, and the median over all. σ is what the estimate "
-        "believes.",
+        caption=("Against the calibration" if run.is_of_photographs else "Against the true pose")
+        + "; averages over seeds, and the median over all. σ is what the estimate believes.",
         headings=(
             Heading("pair", "pair", numeric=False),
             Heading("poses", "poses", meaning="How many were estimated."),

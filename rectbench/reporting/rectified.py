@@ -1,4 +1,4 @@
-"""Rectified pairs side by side, with scan lines through true correspondences and boxes round patches."""
+"""Rectified pairs side by side, with scan lines through correspondences and boxes round patches."""
 
 from __future__ import annotations
 
@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from rectbench.cameras.arrays import FloatArray
 from rectbench.rendering.images import StereoPair
-from rectbench.rendering.truth import Truth
 from rectbench.reporting.columns import column
 from rectbench.reporting.numbers import shown
 from rectbench.reporting.panels import fit_into_box, panel_grid, write_head, write_message
@@ -31,6 +30,8 @@ _BOX_COLOUR = "#ff1f1f"
 _BOX_SHARE = 0.14
 _BOX_AIMS = ((0.22, 0.4), (0.5, 0.62), (0.78, 0.48))
 """Side of a box as a share of the image's height, and about where boxes go, as shares of the image."""
+_ERRORS = ("row_error_mean_px", "row_error_board_mean_px", "row_error_features_mean_px")
+"""Row errors by how far they are to be trusted; the first that was measured is told."""
 _RING_SHARE = 0.025
 _GAP = 0.012
 Image = NDArray[np.generic]
@@ -67,8 +68,8 @@ def draw_rectified(sources: Sources, results: Sequence[Result], methods: Sequenc
 
     Raises whatever the sources raise for the pair itself; a method that fails shows why in its place.
     """
-    pair, truth = sources.pair(results[0])
-    marks = _marks(truth, pair)
+    known = sources.pair(results[0])
+    pair, marks = known.images, _marks(known.matches, known.images)
     panels: list[tuple[str, Panel | str]] = [("", Panel("", pair.left, pair.right, marks))]
     panels += [
         (r.method, attempted(r, lambda r=r: _panel(sources, r, pair, marks)))  # type: ignore[misc]
@@ -89,7 +90,8 @@ def draw_rectified(sources: Sources, results: Sequence[Result], methods: Sequenc
 
 def _panel(sources: Sources, result: Result, pair: StereoPair, marks: Shown) -> Panel:
     rect = sources.rectification(result)
-    keys = [key for key in ("row_error_mean_px", "log_distortion") if key in result.metrics]
+    errors = [key for key in _ERRORS if key in result.metrics][:1]
+    keys = [*errors, *(key for key in ("log_distortion",) if key in result.metrics)]
     note = ",  ".join(f"{column(k).heading} {_quantity(result.metrics[k], k)}" for k in keys)
     return Panel(note, *rect.remap(pair.left, pair.right), marks.moved(rect))
 
@@ -99,9 +101,8 @@ def _quantity(value: float, key: str) -> str:
     return f"{shown(value, shown_as)} {shown_as.unit}".strip()
 
 
-def _marks(truth: Truth, pair: StereoPair) -> Shown:
+def _marks(matches: Matches, pair: StereoPair) -> Shown:
     """What is marked: a line in each band of rows, left and right by turns; a box in each third."""
-    matches = Matches(*truth.matches(2000, seed=0))
     height, width = pair.left.shape[:2]
     aims = [(width * (0.36 if band % 2 else 0.64), (band + 0.5) / LINES * height) for band in range(LINES)]
     lines = [_nearest(matches.left, aim, 0.5 * height / LINES) for aim in aims]

@@ -11,6 +11,7 @@ from rectbench.reporting.run_folder import Run
 
 _LABELS = {
     "command": "Command",
+    "data": "Photographs of",
     "wall_s": "Took",
     "git_revision": "Git revision",
     "cpu": "CPU",

@@ -106,6 +106,12 @@ class Run:
         return tuple(in_display_order({key for r in self.results for key in r.metrics}))
 
     @property
+    def is_of_photographs(self) -> bool:
+        """Whether its pairs are photographs, about which nobody knows the truth."""
+        spec = self.facts.get("spec")
+        return bool(spec.get("photographs")) if isinstance(spec, Mapping) else False
+
+    @property
     def geometric_pose(self) -> str:
         """The pose under which distortion is shown: exact where the run has it."""
         return EXACT_POSE if EXACT_POSE in self.poses else self.poses[0]

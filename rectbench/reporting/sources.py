@@ -13,12 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rectbench.bench import recall
-from rectbench.bench.planning import CellTask, PairTask
+from rectbench.bench.recall import KnownPair
+from rectbench.bench.tasks import AnyPair, CellTask
 from rectbench.cameras.arrays import FloatArray
 from rectbench.errors import InvalidInput, InvalidResult, RectbenchError
 from rectbench.metrics import Jacobians, distortion, distortion_of
-from rectbench.rendering.images import StereoPair
-from rectbench.rendering.truth import Truth
 from rectbench.reporting.run_folder import Result, Run
 from rectbench.rigs import Rig
 from rectbench.warps import Rectification
@@ -44,18 +43,18 @@ class Cloud(Protocol):
 
 @dataclass(frozen=True)
 class Sources:
-    """How to get, for a cell, its images and truth, its rectification, and distortion at pixels.
+    """How to get, for a cell, its images and what is known of them, its rectification, its distortion.
 
     Parameters
     ----------
-    pair : the images and the truth of a cell.
+    pair : the images of a cell and what is known of them.
     rectification : the cell's rectification, fitted again.
     distortion : native distortion [N] of a rectification at pixels [N, 2] of one side of a rig.
     reconstruction : the points that dense matching on the cell's rectified pair gives.
     version : changes with whatever changes those answers while the cell's row stays the same.
     """
 
-    pair: Callable[[Result], tuple[StereoPair, Truth]]
+    pair: Callable[[Result], KnownPair]
     rectification: Callable[[Result], Rectification]
     distortion: Callable[[Rectification, Rig, Side, FloatArray], FloatArray]
     reconstruction: Callable[[Result], Cloud]
@@ -90,7 +89,7 @@ class _Recalled:
     def __init__(self, folder: Path) -> None:
         self._folder = folder
         self._fitted: dict[Identity, Rectification] = {}
-        self._pair: tuple[PairTask, tuple[StereoPair, Truth]] | None = None
+        self._pair: tuple[AnyPair, KnownPair] | None = None
 
     @cached_property
     def _tasks(self) -> dict[Identity, CellTask]:
@@ -102,7 +101,7 @@ class _Recalled:
             raise InvalidInput(f"{self._folder / 'run.json'} does not plan {result.method} on {result.pair}")
         return task
 
-    def pair(self, result: Result) -> tuple[StereoPair, Truth]:
+    def pair(self, result: Result) -> KnownPair:
         task = self._task(result)
         if self._pair is None or self._pair[0] != task.pair:
             self._pair = task.pair, recall.recalled_pair(task)
@@ -119,8 +118,8 @@ class _Recalled:
     def reconstruction(self, result: Result) -> Cloud:
         from rectbench.matching.reconstruction import reconstruct
 
-        pair, _ = self.pair(result)
-        return reconstruct(self.rectification(result), pair.left, pair.right)
+        images = self.pair(result).images
+        return reconstruct(self.rectification(result), images.left, images.right)
 
     def version(self, result: Result) -> str:
         try:

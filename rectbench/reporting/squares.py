@@ -45,7 +45,7 @@ def draw_squares(sources: Sources, results: Sequence[Result], methods: Sequence[
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import LogNorm
 
-    camera = sources.pair(results[0])[1].rig.left
+    camera = sources.pair(results[0]).rig.left
     squares = source_squares(camera)
     panels: list[tuple[str, Cells | str]] = [("", Cells(squares, np.ones(len(squares)), camera.size))]
     panels += [

@@ -16,6 +16,7 @@ from rectbench.reporting.columns import (
     ALL_PIXELS_KEYS,
     DISTORTION_KEYS,
     MAIN_KEYS,
+    PHOTOGRAPH_KEYS,
     RANKING_KEY,
     Column,
     column,
@@ -70,7 +71,7 @@ def is_ranked(run: Run) -> bool:
 
 def _main_table(run: Run, pose: str) -> Table:
     results = run.select(pose=pose)
-    keys = [key for key in MAIN_KEYS if key in run.metrics]
+    keys = [key for key in (PHOTOGRAPH_KEYS if run.is_of_photographs else MAIN_KEYS) if key in run.metrics]
     methods = [m for m in run.methods if any(r.method == m for r in results)]
     summaries = ranked(summarise(m, [r for r in results if r.method == m], keys) for m in methods)
     failing = any(not s.complete for s in summaries)
@@ -94,7 +95,8 @@ def _main_table(run: Run, pose: str) -> Table:
         )
         for i, s in enumerate(summaries)
     )
-    caption = f"Averages over {_pairs_text(results)}, ranked by log distortion."
+    pairs = _photographs_text(results) if run.is_of_photographs else _pairs_text(results)
+    caption = f"Averages over {pairs}, ranked by log distortion."
     return Table(
         kind="main",
         part=run.group,
@@ -306,6 +308,12 @@ def _pairs_text(results: Sequence[Result]) -> str:
     if seeds > 1 and pairs == places * seeds:
         return f"{counted(places, 'pair')} × {seeds} seeds ({_grid_text(results, ('motion',))})"
     return f"{counted(pairs, 'pair')} ({_grid_text(results, ('motion', 'seed'))})"
+
+
+def _photographs_text(results: Sequence[Result]) -> str:
+    """How many pairs of how many rigs."""
+    pairs, rigs = (len({getattr(r, of) for r in results}) for of in ("pair", "rig"))
+    return f"{counted(pairs, 'pair')} of photographs ({counted(rigs, 'rig')})"
 
 
 def _grid_text(results: Sequence[Result], beside: Sequence[str]) -> str:

@@ -127,6 +127,14 @@ def all_formats() -> list[RigFormat | CameraFormat]:
     return [*RIG_FORMATS, *CAMERA_FORMATS, *LAST]
 
 
+def is_calibration(path: RigSource) -> bool:
+    """Whether a file holds a calibration, or a part of one, by its content; False for what cannot be read."""
+    try:
+        return _is_known(Source.read(path))
+    except InvalidInput:
+        return False
+
+
 def _read(paths: list[RigSource], given: Given) -> Rig:
     if len(paths) > 1 or not is_folder(paths[0]):
         return _read_sources([Source.read(path) for path in paths], given)

@@ -10,7 +10,8 @@ import rectbench as rb
 from rectbench.bench.cells import cell_inputs
 from rectbench.bench.keys import digest
 from rectbench.bench.pairs import image_inputs, placed_rig, truth_inputs
-from rectbench.bench.planning import CellTask, Selection, find_report, make_plan
+from rectbench.bench.planning import Selection, find_report, make_plan
+from rectbench.bench.tasks import CellTask
 from tests.bench.fakes import small_report, write_method, write_scene
 
 

@@ -12,13 +12,14 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from rectbench.bench.recall import KnownPair
 from rectbench.cameras import Camera
 from rectbench.metrics import distortion
 from rectbench.rendering.images import StereoPair
 from rectbench.rendering.truth import Truth
 from rectbench.reporting import Sources
 from rectbench.rigs import Rig
-from rectbench.warps import Cubic, Epipolar, Perspective, Radial, Rectification
+from rectbench.warps import Cubic, Epipolar, Matches, Perspective, Radial, Rectification
 
 METHODS = {
     "conventional": (0.62, 0.9, 0.61),
@@ -206,10 +207,11 @@ class FakeCloud:
 def fake_sources(width: int = 320) -> Sources:
     """Pictures without a renderer."""
     rig = fake_rig(width)
-    pair = fake_pair(rig)
+    images, truth = fake_pair(rig)
+    known = KnownPair(images, rig, Matches(*truth.matches(2000, seed=0)), truth)
     return Sources(
-        pair=lambda result: pair,
+        pair=lambda result: known,
         rectification=lambda result: fake_rectification(rig, result.method),
         distortion=lambda rect, rig, side, px: distortion(rect, rig, px).per_pixel[side],
-        reconstruction=lambda result: FakeCloud(*pair),
+        reconstruction=lambda result: FakeCloud(images, truth),
     )

@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+import rectbench as rb
 from rectbench.errors import Unsupported
 from rectbench.reporting import Sources
 from rectbench.reporting.bars import draw_bars, pair_chart, stage_chart
-from rectbench.reporting.clouds import SIZE
+from rectbench.reporting.clouds import SIZE, draw_clouds
 from rectbench.reporting.columns import PROTOCOLS, STAGES
 from rectbench.reporting.distortion_maps import BEYOND, draw_distortion_maps
 from rectbench.reporting.energy_curves import draw_energy, shape_of
@@ -196,3 +197,29 @@ def test_stated_times_are_lines_with_their_number(write_run: WriteRun) -> None:
     assert [text.get_text() for text in ax.texts] == ["3", "15"]
     assert ax.get_yscale() == "log"
     assert ax.get_ylim()[1] > 15
+
+
+def test_clouds_without_a_truth_have_a_row_a_method_and_one_view_of_all(
+    write_run: WriteRun, sources: Sources
+) -> None:
+    run = read_run(write_run([make_row("a", "t265", "calibrated", m) for m in ("abraham", "conventional")]))
+    known = replace(sources.pair(run.results[0]), truth=None)
+    figure = draw_clouds(replace(sources, pair=lambda result: known), run.results, run.methods)
+    pictures = [np.asarray(ax.images[0].get_array()) for ax in figure.axes if ax.images]
+    assert len(pictures) == 4
+    assert np.array_equal(pictures[0], pictures[2])  # the same perfect cloud, seen from the same place
+    assert (pictures[0] != BACKGROUND).any()
+    assert [text.get_text() for text in figure.axes[0].texts][:1] != ["truth"]
+
+
+def test_a_photographed_pair_without_matches_is_shown_without_marks(
+    write_run: WriteRun, sources: Sources
+) -> None:
+    run = read_run(write_run([make_row("a", "t265", "calibrated", "abraham")]))
+    nothing = rb.Matches(np.empty((0, 2)), np.empty((0, 2)))
+    known = replace(sources.pair(run.results[0]), matches=nothing, truth=None)
+    figure = draw_rectified(replace(sources, pair=lambda result: known), run.results, run.methods)
+    for ax in figure.axes:
+        assert ax.images
+        assert not ax.patches
+        assert not [line for line in ax.lines if line.get_marker() == "o"]
