@@ -1,9 +1,10 @@
 """The TOML of anipose and aniposelib, freemocap and caliscope: a table a camera.
 
 Keys are `size`, `matrix`, `distortions` (OpenCV's, of a pinhole, or with `fisheye = true` of its fisheye),
-`rotation` (a rotation vector) and `translation`, which take points of the world to the camera, in the unit of
-the calibration board, often millimetres. Left and right are the first two tables, or those asked for by
-`name`, or by the table's own. caliscope has the tables under `cameras`. Pixel (0, 0) is the centre of a pixel.
+`rotation` (a rotation vector) and `translation`, which take points of the world to the camera, in the unit
+of the calibration board, often millimetres. Left and right are the first two tables, or those asked for by
+the table's name or the `name` in it. caliscope has the tables under `cameras`. Pixel (0, 0) is the centre of
+a pixel.
 """
 
 from __future__ import annotations

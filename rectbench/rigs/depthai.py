@@ -1,9 +1,9 @@
 """The calibration of a Luxonis OAK camera, the JSON that depthai's `eepromToJsonFile` writes.
 
 `cameraData` is a list of [socket, camera]. A camera's `extrinsics` take its points to the camera of
-`toCameraSocket`, with a translation in centimetres; chains of them end at a camera with -1. Left and right are
-those of `stereoRectificationData`, or the sockets asked for, such as CAM_B and CAM_C. `distortionCoeff` is
-OpenCV's vector of 14, or of a fisheye its four; pixel (0, 0) is the centre of a pixel.
+`toCameraSocket`, with a translation in centimetres; chains of them end at a camera with -1. Left and right
+are those of `stereoRectificationData`, or the sockets asked for, such as CAM_B and CAM_C. `distortionCoeff`
+is OpenCV's vector of 14, or of a fisheye its four; pixel (0, 0) is the centre of a pixel.
 """
 
 from __future__ import annotations
@@ -89,11 +89,8 @@ def _read_view(section: Section, T: FloatArray, given: Given) -> View:
         raise section.fault("cameraType", "0 (perspective) or 1 (fisheye)")
     lens = LENSES[int(kind)]
     params = camera_matrix(section, "intrinsicMatrix", lens)
-    coefficients = section.numbers("distortionCoeff", "OpenCV's coefficients")
-    if lens == "fisheye" and len(coefficients) == 14 and not any(coefficients[4:]):
-        coefficients = coefficients[:4]
-    vector = Section(section.file, section.key, {"distortionCoeff": coefficients})
-    params |= lens_parameters(vector, "distortionCoeff", lens, (4,) if lens == "fisheye" else PINHOLE_COUNTS)
+    counts = (4,) if lens == "fisheye" else PINHOLE_COUNTS
+    params |= lens_parameters(section, "distortionCoeff", lens, counts)
     size = section.sides("width", "height", given.size)
     where = section.at("").removesuffix(".")
     with blaming(where):

@@ -1,8 +1,8 @@
 """EasyMocap's `intri.yml` and `extri.yml`, two files of `cv::FileStorage` with a list of `names`.
 
 `K_<name>` and `dist_<name>` (or `D_<name>`) are OpenCV's of a pinhole, `H_<name>` and `W_<name>` the image's
-size where they are written. `Rot_<name>` (3x3) or `R_<name>` (a rotation vector) and `T_<name>` take points of
-the world to the camera, metres. Left and right are the first two names, or those asked for.
+size where they are written. `Rot_<name>` (3x3) or `R_<name>` (a rotation vector) and `T_<name>` take points
+of the world to the camera, metres. Left and right are the first two names, or those asked for.
 """
 
 from __future__ import annotations
@@ -18,24 +18,27 @@ from rectbench.rigs.pose import read_rotation
 from rectbench.rigs.rig import Rig
 from rectbench.rigs.sources import Source
 
-FILES = ("intri.yml", "extri.yml")
+FILES = {"K_": "intri.yml", "T_": "extri.yml"}
+"""The two files, by how keys begin that only they have."""
 
 
 def _read(sources: Sequence[Source], given: Given) -> Rig:
     first = sources[0]
-    files = [*sources] if len(sources) > 1 else [first, first.beside(FILES[_has(first, "K_")])]
-    intrinsics, extrinsics = (_holder(files, start, name) for start, name in zip(("K_", "T_"), FILES, strict=True))
+    files = list(sources)
+    if len(files) == 1:
+        files += [first.beside(name) for start, name in FILES.items() if not _has(first, start)]
+    intrinsics, extrinsics = (_holder(files, start) for start in FILES)
     names = chosen(_names(intrinsics), given, intrinsics.path)
     views = [_read_view(intrinsics.document, extrinsics.document, name, given) for name in names]
     return rig_of_views(views, given, first.name)
 
 
-def _holder(sources: Sequence[Source], start: str, name: str) -> Source:
+def _holder(sources: Sequence[Source], start: str) -> Source:
     """The one file with keys that begin so."""
     found = [source for source in sources if _has(source, start)]
     if len(found) != 1:
         raise InvalidInput(
-            f"{sources[0].path}: comes with {len(found)} files with {start}...; expected one, {name}"
+            f"{sources[0].path}: comes with {len(found)} files with {start}...; expected one, {FILES[start]}"
         )
     return found[0]
 

@@ -2,7 +2,7 @@
 
 `T_B_C` takes points of the camera to the body, in metres (`T_C_B` its inverse). maplab's sensor files hold
 the same under `sensors`, as the sensor of type NCAMERA. The projections are those of aslam_cv2; pixel (0, 0)
-is the centre of a pixel. Left and right are the first two, or those asked for: cam0, cam1, ... by their places.
+is the centre of a pixel. Left and right are the first two, or those asked for: cam0, cam1, ... by places.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
 from rectbench.rigs.documents import Section, blaming
 from rectbench.rigs.formats import Given, RigFormat, View, chosen, inverse, rig_of_views, single
-from rectbench.rigs.kalibr import LAYOUTS
+from rectbench.rigs.kalibr import LAYOUTS, Layout
 from rectbench.rigs.rig import Rig
 from rectbench.rigs.sources import Source
 
@@ -45,16 +45,7 @@ def _cameras(source: Source) -> Section:
 
 def _read_view(entry: Section, given: Given) -> View:
     section = entry.section("camera", "a camera")
-    projection, distortion = section.text("type", " or ".join(PROJECTIONS)), "none"
-    layouts = {theirs for theirs, ours in DISTORTIONS.items() if (PROJECTIONS.get(projection), ours) in LAYOUTS}
-    if not layouts:
-        raise section.fault("type", " or ".join(PROJECTIONS))
-    if "distortion" in section:
-        distortions = section.section("distortion", "its type and parameters")
-        distortion = distortions.text("type", ", ".join(sorted(layouts)))
-        if distortion not in layouts:
-            raise distortions.fault("type", f"{', '.join(sorted(layouts))} with {projection}")
-    layout = LAYOUTS[PROJECTIONS[projection], DISTORTIONS[distortion]]
+    layout = _layout(section)
     params = _numbers(section, "intrinsics", layout.intrinsics)
     if layout.distortion:
         params |= _numbers(section.section("distortion", "its parameters"), "parameters", layout.distortion)
@@ -65,6 +56,20 @@ def _read_view(entry: Section, given: Given) -> View:
     if "T_C_B" in entry and "T_B_C" not in entry:
         return View(where, camera, inverse(entry.rigid("T_C_B", "the pose from body to camera, metres")))
     return View(where, camera, entry.rigid("T_B_C", "the pose from camera to body, metres"))
+
+
+def _layout(section: Section) -> Layout:
+    projection = section.text("type", " or ".join(PROJECTIONS))
+    known = [theirs for theirs, ours in DISTORTIONS.items() if (PROJECTIONS.get(projection), ours) in LAYOUTS]
+    if not known:
+        raise section.fault("type", " or ".join(PROJECTIONS))
+    distortion = "none"
+    if "distortion" in section:
+        distortions = section.section("distortion", "its type and parameters")
+        distortion = distortions.text("type", ", ".join(known))
+        if distortion not in known:
+            raise distortions.fault("type", f"{', '.join(known)} with {projection}")
+    return LAYOUTS[PROJECTIONS[projection], DISTORTIONS[distortion]]
 
 
 def _numbers(section: Section, key: str, names: tuple[str, ...]) -> dict[str, float]:
@@ -85,6 +90,4 @@ def _recognises(source: Source) -> bool:
     return _is_rig(values) or (isinstance(sensors, list) and any(map(_is_rig, sensors)))
 
 
-FORMAT = RigFormat(
-    "ncamera", "maplab, aslam and SVO camera rig (YAML)", _recognises, _read, has_many=True
-)
+FORMAT = RigFormat("ncamera", "maplab, aslam and SVO camera rig (YAML)", _recognises, _read, has_many=True)

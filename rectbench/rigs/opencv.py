@@ -9,6 +9,10 @@
 | image | `image_width` and `image_height`, or `imageSize`, `image_size`, `cameraResolution` |
 | lens | `model` (or `camera_model`): pinhole, fisheye or omnidir; or `fisheye_model: 1` |
 
+Instead of 1 and 2 a file may have the pairs of `PAIRS`, such as `K_left` and `K_right`, or a section for each
+camera, such as `left_camera` and `right_camera`, with the pose beside them or in a section `stereo`. Where
+there is a matrix 0, cameras 0 and 1 are left and right.
+
 X_right = R X_left + T, as `stereoCalibrate` gives it, in the unit of the board's squares: metres unless
 the caller says otherwise. Several files complete each other; a file for each camera is read in the
 order given, left first. Four distortion coefficients mean a pinhole camera unless the file says
@@ -22,7 +26,7 @@ xi_1 xi_2.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
@@ -39,7 +43,16 @@ from rectbench.rigs.formats import Given, RigFormat, Writing, assembled, layout_
 from rectbench.rigs.rig import Rig
 from rectbench.rigs.sources import Source
 
-MATRIX = ("M", "K", "cameraMatrix", "camera_matrix", "CameraMatrix", "Camera_Matrix")
+MATRIX = (
+    "M",
+    "K",
+    "cameraMatrix",
+    "camera_matrix",
+    "CameraMatrix",
+    "Camera_Matrix",
+    "mtx",
+    "intrinsic_matrix",
+)
 DISTORTION = (
     "D",
     "distCoeffs",
@@ -47,14 +60,44 @@ DISTORTION = (
     "distortion_coefficients",
     "DistCoeffs",
     "Distortion_Coefficients",
+    "dist",
+    "distortion",
+    "distortion_coeffs",
 )
 XI = ("xi",)
-ROTATION = ("R", "rvec", "om")
-TRANSLATION = ("T", "tvec")
+ROTATION = ("R", "rvec", "om", "rotation_matrix", "rotation")
+TRANSLATION = ("T", "tvec", "t", "translation_vector", "translation")
 SIX = "extrinsic_parameters"
 SIZE = ("imageSize", "image_size", "ImageSize", "cameraResolution")
 SIDES = ("image_width", "image_height")
 MODEL = ("model", "camera_model")
+YES_OR_NO = {"0": False, "0.0": False, "false": False, "1": True, "1.0": True, "true": True}
+FLAGS = ("fisheye_model", "fisheye", "is_fisheye")
+
+PAIRS = (
+    ("{}1", "{}2"),
+    ("{}_1", "{}_2"),
+    ("{}_left", "{}_right"),
+    ("left_{}", "right_{}"),
+    ("{}Left", "{}Right"),
+    ("{}_l", "{}_r"),
+    ("{}_L", "{}_R"),
+    ("{}L", "{}R"),
+)
+"""How files tell the keys of the left and the right camera apart, of which the first are OpenCV's."""
+
+FROM_ZERO = (("{}0", "{}1"), ("{}_0", "{}_1"))
+"""The same for files that count from 0."""
+
+SECTIONS = (
+    *(("left", "right"), ("left_camera", "right_camera"), ("camera_left", "camera_right")),
+    *(("cam_left", "cam_right"), ("cam0", "cam1"), ("camera0", "camera1"), ("camera_0", "camera_1")),
+    *(("cam1", "cam2"), ("camera1", "camera2"), ("camera_1", "camera_2")),
+)
+"""What sections of the two cameras are called."""
+
+SHARED = ("stereo", "extrinsics", "extrinsic", "stereo_calibration", "intrinsics")
+"""Sections of a file whose keys count as its own."""
 
 FOCAL = ("fx", "fy", "cx", "cy")
 CAMERA_MODELS = {"pinhole": "pinhole", "fisheye": "kannala-brandt", "omnidir": "unified"}
@@ -104,8 +147,13 @@ def lens_parameters(file: Section, key: str, lens: str, counts: Collection[int])
     values = file.values.get(key)
     if 0 in counts and values in ([], None):
         return {}
-    distortion = file.array(key, f"{expected} distortion coefficients ({lens})", counts).tolist()
+    expected = f"{expected} distortion coefficients ({lens})"
+    # ROS drivers, and depthai, fill the vector of a fisheye up with zeros to that of a pinhole.
+    filled = PINHOLE_COUNTS if lens == "fisheye" else ()
+    distortion = file.array(key, expected, {*counts, *filled}).tolist()
     order = ORDERS[lens]
+    if any(distortion[len(order) :]) and lens == "fisheye":
+        raise file.fault(key, expected)
     if any(distortion[len(order) :]):
         raise InvalidInput(
             f"{file.at(key)} tilts the sensor (tau); expected its last two of 14 coefficients 0"
@@ -114,7 +162,7 @@ def lens_parameters(file: Section, key: str, lens: str, counts: Collection[int])
 
 
 def _read(sources: Sequence[Source], given: Given) -> Rig:
-    files = _Files([source.document for source in sources])
+    files = _Files([part for source in sources for part in _parts(source.document)])
     left, right = (_read_camera(files, number, given.size) for number in (1, 2))
     where, T = _read_pose(files)
     return assembled(left, right, T, given, f"{files}: {where}", sources[0].name)
@@ -132,6 +180,19 @@ def _read_pose(files: _Files) -> tuple[str, FloatArray]:
     return f"{rotation_key}, {translation_key}", rigid(R, t)
 
 
+def _parts(document: Section) -> list[Section]:
+    """The file itself and its sections of the two cameras, left first, and of what they share."""
+    found = [pair for pair in SECTIONS if all(isinstance(document.values.get(name), dict) for name in pair)]
+    names = [*(found[0] if found else ()), *SHARED]
+    shared = [document.section(name, "keys") for name in names if isinstance(document.values.get(name), dict)]
+    return [document, *shared]
+
+
+def _named(keys: Iterable[str], patterns: Collection[str]) -> tuple[str, ...]:
+    """The keys of a camera by these patterns."""
+    return tuple(pattern.format(key) for key in keys for pattern in patterns)
+
+
 @dataclass(frozen=True)
 class _Files:
     """Files that complete each other; what one lacks is looked for in the next."""
@@ -139,21 +200,27 @@ class _Files:
     documents: list[Section]
 
     def __str__(self) -> str:
-        return " + ".join(document.file for document in self.documents)
+        return " + ".join(dict.fromkeys(document.file for document in self.documents))
 
     def holders(self, keys: tuple[str, ...]) -> Iterator[tuple[Section, str]]:
         return ((document, key) for document in self.documents for key in keys if key in document)
 
+    @property
+    def pairs(self) -> tuple[tuple[str, str], ...]:
+        """How keys of left and right may be called here."""
+        from_zero = tuple(_named(MATRIX, (left,)) for left, _ in FROM_ZERO)
+        return (FROM_ZERO if any(any(self.holders(keys)) for keys in from_zero) else ()) + PAIRS
+
     def of_camera(self, keys: tuple[str, ...], number: int) -> Iterator[tuple[Section, str]]:
         """Numbered keys anywhere, or else the number-th file that speaks of a camera of its own."""
-        yield from self.holders(tuple(f"{key}{separator}{number}" for key in keys for separator in ("", "_")))
+        yield from self.holders(_named(keys, [pair[number - 1] for pair in self.pairs]))
         owners = (document for document in self.documents if any(key in document for key in MATRIX))
         for document in islice(owners, number - 1, number):
             yield from ((document, key) for key in keys if key in document)
 
     def of_pair(self, document: Section) -> bool:
         """Whether a file speaks of two cameras; in one of a single camera, extrinsics are the board's."""
-        return any(f"{key}{separator}2" in document for key in MATRIX for separator in ("", "_"))
+        return any(key in document for key in _named(MATRIX, [right for _, right in self.pairs]))
 
     def first(self, keys: tuple[str, ...], number: int, expected: str) -> tuple[Section, str]:
         """Document and key where camera `number` has one of `keys`."""
@@ -168,7 +235,7 @@ class _Files:
         for document, key in self.holders(keys):
             return key, document.array(key, expected, sizes)
         raise InvalidInput(
-            f"{self}: {' or '.join(keys)} is missing; expected {expected}"
+            f"{self}: {' or '.join(keys[:3])} is missing; expected {expected}"
             " (intrinsics and extrinsics in two files are read as a list of both)"
         )
 
@@ -190,8 +257,11 @@ def _read_camera(files: _Files, number: int, size: tuple[int, int] | None) -> Ca
 
 
 def _read_lens(files: _Files, number: int, implied: str) -> str:
-    for document, key in files.holders(("fisheye_model",)):
-        if document.number(key, "0 or 1") != 0:
+    for document, key in (*files.of_camera(FLAGS, number), *files.holders(FLAGS)):
+        word = str(document.values[key]).lower()
+        if word not in YES_OR_NO:
+            raise document.fault(key, "0 or 1")
+        if YES_OR_NO[word]:
             return "fisheye"
     for document, key in (*files.of_camera(MODEL, number), *files.holders(MODEL)):
         word = str(document.values[key]).lower()
@@ -209,8 +279,7 @@ def _read_size(files: _Files, number: int, given: tuple[int, int] | None) -> tup
         stated = Section(document.file, "", {key: width, f"{key} (height)": height})
         return stated.sides(key, f"{key} (height)", given)
     for document, key in (*files.of_camera(SIDES, number), *files.holders(SIDES)):
-        end = key.removeprefix(SIDES[0]).removeprefix(SIDES[1])
-        return document.sides(f"{SIDES[0]}{end}", f"{SIDES[1]}{end}", given)
+        return document.sides(key.replace(*SIDES[::-1]), key.replace(*SIDES), given)
     if given is None:
         raise InvalidInput(
             f"{files}: image_width is missing; expected it and image_height, or `size=` beside the file"
@@ -219,10 +288,13 @@ def _read_size(files: _Files, number: int, given: tuple[int, int] | None) -> tup
 
 
 def _recognises(source: Source) -> bool:
-    numbered = {f"{key}{end}" for key in MATRIX for end in ("", "1", "2", "_1", "_2")}
+    patterns = [pattern for pair in (("{}",), *PAIRS, *FROM_ZERO) for pattern in pair]
+    numbered = set(_named(MATRIX, patterns))
     head = source.head.lstrip()
     has_header = head.startswith(("%YAML", "<?xml", "<opencv_storage")) or "opencv-matrix" in head
-    return bool(source.keys & (numbered | {*ROTATION, *TRANSLATION})) or (has_header and bool(source.keys))
+    if source.keys & {*numbered, *ROTATION, *TRANSLATION} or (has_header and source.keys):
+        return True
+    return bool(source.keys) and any(part.values.keys() & set(MATRIX) for part in _parts(source.document))
 
 
 def _texts(rig: Rig, name: str) -> dict[str, str]:

@@ -1,8 +1,8 @@
 """The INI of ROS' camera_calibration, `ost.txt` or `.ini`, of one camera, or of a pair one after the other.
 
 Labels stand alone in a line, such as `camera matrix`, above their numbers. Of a pair the first camera is the
-left one. What the numbers mean, and where the pose is, `rectbench.rigs.ros` says; the distortion is plumb_bob,
-or rational_polynomial where there are eight coefficients.
+left one. What the numbers mean, and where the pose is, `rectbench.rigs.ros` says; the distortion is
+plumb_bob, or rational_polynomial where there are eight coefficients.
 """
 
 from __future__ import annotations
@@ -72,7 +72,10 @@ def _count(source: Source) -> int:
 
 
 CAMERA_FORMAT = CameraFormat(
-    "ost", "ROS camera_calibration ost.txt or .ini (two files)", lambda source: _count(source) == 1, _read_view
+    "ost",
+    "ROS camera_calibration ost.txt or .ini (two files)",
+    lambda source: _count(source) == 1,
+    _read_view,
 )
 FORMAT = RigFormat(
     "ost-pair",

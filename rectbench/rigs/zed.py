@@ -55,7 +55,9 @@ def _read(sources: Sequence[Source], given: Given) -> Rig:
 def _parsed(source: Source) -> Section:
     """Sections by name, each with its keys in lower case."""
     if len(source.text) > MAX_CHARACTERS:
-        raise InvalidInput(f"{source.path}: is larger than {MAX_CHARACTERS >> 10} KiB; expected a ZED's .conf")
+        raise InvalidInput(
+            f"{source.path}: is larger than {MAX_CHARACTERS >> 10} KiB; expected a ZED's .conf"
+        )
     parser = configparser.ConfigParser(interpolation=None, delimiters=("=",))
     try:
         parser.read_string(source.text)

@@ -109,7 +109,7 @@ def test_four_coefficients_mean_pinhole_unless_fisheye_is_said(tmp_path: Path) -
             "D2 or distCoeffs2 or dist_coeffs2 is missing; expected 4 distortion coefficients (fisheye)",
         ),
         ({"R": None}, "R or rvec or om is missing; expected a 3x3 rotation"),
-        ({"T": None}, "T or tvec is missing; expected three metres"),
+        ({"T": None}, "T or tvec or t is missing; expected three metres"),
         ({"image_width": None}, "image_width is missing; expected whole pixels"),
         (
             {"image_width": None, "image_height": None},
@@ -123,8 +123,8 @@ def test_four_coefficients_mean_pinhole_unless_fisheye_is_said(tmp_path: Path) -
         ({"K1": np.full((3, 3), np.nan)}, "K1 is ['.Nan', "),
         ({"K1": -np.diag([1.0, 1, -1])}, "K1, D1: "),
         (
-            {"D1": np.zeros((1, 5))},
-            "D1 is ['0.', '0.', '0.', '0.', '0.']; expected 4 distortion coefficients (fisheye)",
+            {"D1": np.ones((1, 5))},
+            "D1 is ['1.', '1.', '1.', '1.', '1.']; expected 4 distortion coefficients (fisheye)",
         ),
         ({"R": np.eye(3) * 2}, "R, T: R_right_left is no rotation"),
         ({"T": np.zeros(3)}, "R, T: the baseline is zero"),
