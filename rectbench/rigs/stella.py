@@ -55,7 +55,7 @@ def _rectified(file: Section, size: tuple[int, int], baseline: float, given: Giv
 
 
 def _read_view(rectifier: Section, side: str, size: tuple[int, int], baseline: float) -> View:
-    kind = rectifier.values.get("model", "perspective")
+    kind = rectifier.text("model", "perspective or fisheye") if "model" in rectifier else "perspective"
     if kind not in MODELS:
         raise rectifier.fault("model", "perspective or fisheye")
     lens = MODELS[kind]
