@@ -75,6 +75,7 @@ OFFSPRING = {
 }
 """What others put into a chain, and Kalibr itself does not read."""
 
+CAMERA = re.compile("cam[0-9]{1,2}")
 CONFIG = "relative_config_imucam"
 """Where OpenVINS' configuration names its chain."""
 
@@ -85,7 +86,7 @@ def _recognises(source: Source) -> bool:
 
 def _is_chain(source: Source) -> bool:
     """Whether a file has cameras by Kalibr's names; one with a matrix is a calibration of OpenCV's."""
-    cameras = [source.document.values[key] for key in source.keys if re.fullmatch("cam[0-9]", key)]
+    cameras = [source.document.values[key] for key in source.keys if CAMERA.fullmatch(key)]
     return any(not (isinstance(camera, dict) and "camera_matrix" in camera) for camera in cameras)
 
 
@@ -114,15 +115,15 @@ def _chain(sources: Sequence[Source]) -> Source:
 def _chosen(chain: Section, given: Given) -> tuple[str, str]:
     names = given.cameras or ("cam0", "cam1")
     for name in names:
-        if given.cameras and (name not in chain or not re.fullmatch("cam[0-9]", name)):
-            known = ", ".join(key for key in chain.values if re.fullmatch("cam[0-9]", key))
+        if given.cameras and (name not in chain or not CAMERA.fullmatch(name)):
+            known = ", ".join(key for key in chain.values if CAMERA.fullmatch(key))
             raise InvalidInput(f"{chain.file}: has no camera {shown(name)}; expected two of {known}")
     return names
 
 
 def _read_pose(chain: Section, left: str, right: str) -> tuple[str, FloatArray]:
     """Where the pose is, and the transformation from the left camera to the right one."""
-    first, last = sorted((left, right))
+    first, last = sorted((left, right), key=lambda name: int(name[3:]))
     links = [
         chain.section(f"cam{place}", "a camera") for place in range(int(first[3:]) + 1, int(last[3:]) + 1)
     ]

@@ -66,6 +66,7 @@ DISTORTION = (
 )
 XI = ("xi",)
 ROTATION = ("R", "rvec", "om", "rotation_matrix", "rotation")
+# Other files have the long words too, so that only the short ones tell a file of OpenCV's.
 TRANSLATION = ("T", "tvec", "t", "translation_vector", "translation")
 SIX = "extrinsic_parameters"
 SIZE = ("imageSize", "image_size", "ImageSize", "cameraResolution")
@@ -292,7 +293,7 @@ def _recognises(source: Source) -> bool:
     numbered = set(_named(MATRIX, patterns))
     head = source.head.lstrip()
     has_header = head.startswith(("%YAML", "<?xml", "<opencv_storage")) or "opencv-matrix" in head
-    if source.keys & {*numbered, *ROTATION, *TRANSLATION} or (has_header and source.keys):
+    if source.keys & {*numbered, *ROTATION[:3], *TRANSLATION[:2]} or (has_header and source.keys):
         return True
     return bool(source.keys) and any(part.values.keys() & set(MATRIX) for part in _parts(source.document))
 
