@@ -205,6 +205,7 @@ def _read_cameras(sources: list[Source], given: Given) -> Rig:
     views = [format.read(source, given) for source in sources if (format := _camera_format(source))]
     others = [source for source in sources if not _camera_format(source)]
     if len(views) != 2:
+        _ = [other.document for other in others]  # what is damaged says so itself
         files = "a file" if len(views) == 1 else f"one of {len(views)} files"
         raise InvalidInput(
             f"{views[0].where}: is {files} with one camera; expected two of them, left and right"
