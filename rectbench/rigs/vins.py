@@ -2,9 +2,9 @@
 
 `body_T_cam0` takes points of camera 0 to the body (IMU), in metres, as the VINS-Fusion maintainers
 state it. `cam0_calib` and `cam1_calib` name the CamOdoCal files of the cameras, beside the configuration.
-VINS-Mono's own configuration holds one camera; two of them are read as `rectbench.rigs.camodocal` says. Written
-is what a configuration says of its cameras, the left one standing for the body; the topics and all about the
-IMU are left to its user.
+VINS-Mono's own configuration holds one camera; two of them are read as `rectbench.rigs.camodocal` says.
+Written is what a configuration says of its cameras, the left one standing for the body; the topics and all
+about the IMU are left to its user.
 """
 
 from __future__ import annotations
