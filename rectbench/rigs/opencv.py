@@ -15,8 +15,9 @@ there is a matrix 0, cameras 0 and 1 are left and right.
 
 X_right = R X_left + T, as `stereoCalibrate` gives it, in the unit of the board's squares: metres unless
 the caller says otherwise. Several files complete each other; a file for each camera is read in the
-order given, left first. Four distortion coefficients mean a pinhole camera unless the file says
-`fisheye`. Where the cameras differ in lens or size, `model_1`, `imageSize_1` and the like tell them apart.
+order given, left first. Four distortion coefficients of which no file says whether they are a pinhole's or a
+fisheye's are taken for a pinhole's, which the log tells, or refused where they can hardly be. Where the
+cameras differ in lens or size, `model_1`, `imageSize_1` and the like tell them apart.
 Pixel (0, 0) is the centre of a pixel; K's skew counts for a fisheye (K[0, 1] = alpha fx) and an
 omnidirectional camera, as in OpenCV's functions, and `projectPoints` has none for a pinhole.
 
@@ -26,9 +27,8 @@ xi_1 xi_2.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Sequence
-from dataclasses import dataclass
-from itertools import islice
+import logging
+from collections.abc import Collection, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -40,65 +40,30 @@ from rectbench.cameras.arrays import FloatArray
 from rectbench.errors import InvalidInput
 from rectbench.rigs.documents import Section, blaming, checked_size, shown
 from rectbench.rigs.formats import Given, RigFormat, Writing, assembled, layout_of, rigid
+from rectbench.rigs.opencv_keys import (
+    DISTORTION,
+    FLAGS,
+    FROM_ZERO,
+    MARKS,
+    MATRIX,
+    MODEL,
+    PAIRS,
+    ROTATION,
+    SIDES,
+    SIX,
+    SIZE,
+    TRANSLATION,
+    XI,
+    Files,
+    named,
+    parts_of,
+)
 from rectbench.rigs.rig import Rig
 from rectbench.rigs.sources import Source
 
-MATRIX = (
-    "M",
-    "K",
-    "cameraMatrix",
-    "camera_matrix",
-    "CameraMatrix",
-    "Camera_Matrix",
-    "mtx",
-    "intrinsic_matrix",
-)
-DISTORTION = (
-    "D",
-    "distCoeffs",
-    "dist_coeffs",
-    "distortion_coefficients",
-    "DistCoeffs",
-    "Distortion_Coefficients",
-    "dist",
-    "distortion",
-    "distortion_coeffs",
-)
-XI = ("xi",)
-ROTATION = ("R", "rvec", "om", "rotation_matrix", "rotation")
-# Other files have the long words too, so that only the short ones tell a file of OpenCV's.
-TRANSLATION = ("T", "tvec", "t", "translation_vector", "translation")
-SIX = "extrinsic_parameters"
-SIZE = ("imageSize", "image_size", "ImageSize", "cameraResolution")
-SIDES = ("image_width", "image_height")
-MODEL = ("model", "camera_model")
+log = logging.getLogger("rectbench.rigs")
+
 YES_OR_NO = {"0": False, "0.0": False, "false": False, "1": True, "1.0": True, "true": True}
-FLAGS = ("fisheye_model", "fisheye", "is_fisheye")
-
-PAIRS = (
-    ("{}1", "{}2"),
-    ("{}_1", "{}_2"),
-    ("{}_left", "{}_right"),
-    ("left_{}", "right_{}"),
-    ("{}Left", "{}Right"),
-    ("{}_l", "{}_r"),
-    ("{}_L", "{}_R"),
-    ("{}L", "{}R"),
-)
-"""How files tell the keys of the left and the right camera apart, of which the first are OpenCV's."""
-
-FROM_ZERO = (("{}0", "{}1"), ("{}_0", "{}_1"))
-"""The same for files that count from 0."""
-
-SECTIONS = (
-    *(("left", "right"), ("left_camera", "right_camera"), ("camera_left", "camera_right")),
-    *(("cam_left", "cam_right"), ("cam0", "cam1"), ("camera0", "camera1"), ("camera_0", "camera_1")),
-    *(("cam1", "cam2"), ("camera1", "camera2"), ("camera_1", "camera_2")),
-)
-"""What sections of the two cameras are called."""
-
-SHARED = ("stereo", "extrinsics", "extrinsic", "stereo_calibration", "intrinsics")
-"""Sections of a file whose keys count as its own."""
 
 FOCAL = ("fx", "fy", "cx", "cy")
 CAMERA_MODELS = {"pinhole": "pinhole", "fisheye": "kannala-brandt", "omnidir": "unified"}
@@ -113,6 +78,9 @@ LAYOUTS = {
 SUFFIXES = (".yml", ".yaml", ".xml", ".json")
 PINHOLE_COUNTS = (4, 5, 8, 12, 14)
 """Lengths of OpenCV's distortion vector; the last two of 14 tilt the sensor."""
+
+LARGEST_TANGENTIAL = 0.02
+"""Of p1 and p2 of a pinhole; what is larger, third or fourth of four, is rather a fisheye's k3 or k4."""
 
 LENSES = {
     "pinhole": "pinhole",
@@ -163,13 +131,13 @@ def lens_parameters(file: Section, key: str, lens: str, counts: Collection[int])
 
 
 def _read(sources: Sequence[Source], given: Given) -> Rig:
-    files = _Files([part for source in sources for part in _parts(source.document)])
+    files = Files([part for source in sources for part in parts_of(source.document)])
     left, right = (_read_camera(files, number, given.size) for number in (1, 2))
     where, T = _read_pose(files)
     return assembled(left, right, T, given, f"{files}: {where}", sources[0].name)
 
 
-def _read_pose(files: _Files) -> tuple[str, FloatArray]:
+def _read_pose(files: Files) -> tuple[str, FloatArray]:
     """Under which keys the pose is, and T_right_left."""
     for document, key in files.holders((SIX,)):
         if files.of_pair(document) and not any(files.holders(ROTATION)):
@@ -181,74 +149,18 @@ def _read_pose(files: _Files) -> tuple[str, FloatArray]:
     return f"{rotation_key}, {translation_key}", rigid(R, t)
 
 
-def _parts(document: Section) -> list[Section]:
-    """The file itself and its sections of the two cameras, left first, and of what they share."""
-    found = [pair for pair in SECTIONS if all(isinstance(document.values.get(name), dict) for name in pair)]
-    names = [*(found[0] if found else ()), *SHARED]
-    shared = [document.section(name, "keys") for name in names if isinstance(document.values.get(name), dict)]
-    return [document, *shared]
-
-
-def _named(keys: Iterable[str], patterns: Collection[str]) -> tuple[str, ...]:
-    """The keys of a camera by these patterns."""
-    return tuple(pattern.format(key) for key in keys for pattern in patterns)
-
-
-@dataclass(frozen=True)
-class _Files:
-    """Files that complete each other; what one lacks is looked for in the next."""
-
-    documents: list[Section]
-
-    def __str__(self) -> str:
-        return " + ".join(dict.fromkeys(document.file for document in self.documents))
-
-    def holders(self, keys: tuple[str, ...]) -> Iterator[tuple[Section, str]]:
-        return ((document, key) for document in self.documents for key in keys if key in document)
-
-    @property
-    def pairs(self) -> tuple[tuple[str, str], ...]:
-        """How keys of left and right may be called here."""
-        from_zero = tuple(_named(MATRIX, (left,)) for left, _ in FROM_ZERO)
-        return (FROM_ZERO if any(any(self.holders(keys)) for keys in from_zero) else ()) + PAIRS
-
-    def of_camera(self, keys: tuple[str, ...], number: int) -> Iterator[tuple[Section, str]]:
-        """Numbered keys anywhere, or else the number-th file that speaks of a camera of its own."""
-        yield from self.holders(_named(keys, [pair[number - 1] for pair in self.pairs]))
-        owners = (document for document in self.documents if any(key in document for key in MATRIX))
-        for document in islice(owners, number - 1, number):
-            yield from ((document, key) for key in keys if key in document)
-
-    def of_pair(self, document: Section) -> bool:
-        """Whether a file speaks of two cameras; in one of a single camera, extrinsics are the board's."""
-        return any(key in document for key in _named(MATRIX, [right for _, right in self.pairs]))
-
-    def first(self, keys: tuple[str, ...], number: int, expected: str) -> tuple[Section, str]:
-        """Document and key where camera `number` has one of `keys`."""
-        found = next(self.of_camera(keys, number), None)
-        if found is None:
-            numbered = " or ".join(f"{key}{number}" for key in keys[:3])
-            raise InvalidInput(f"{self}: {numbered} is missing; expected {expected}")
-        return found
-
-    def pose(self, keys: tuple[str, ...], expected: str, sizes: tuple[int, ...]) -> tuple[str, FloatArray]:
-        """Key and numbers of one half of the pose."""
-        for document, key in self.holders(keys):
-            return key, document.array(key, expected, sizes)
-        raise InvalidInput(
-            f"{self}: {' or '.join(keys[:3])} is missing; expected {expected}"
-            " (intrinsics and extrinsics in two files are read as a list of both)"
-        )
-
-
-def _read_camera(files: _Files, number: int, size: tuple[int, int] | None) -> Camera:
+def _read_camera(files: Files, number: int, size: tuple[int, int] | None) -> Camera:
     document, key = files.first(MATRIX, number, "a 3x3 camera matrix")
     xi = next(files.of_camera(XI, number), None)
-    lens = _read_lens(files, number, "pinhole" if xi is None else "omnidir")
+    stated = _read_lens(files, number)
+    lens = stated or ("pinhole" if xi is None else "omnidir")
     params = camera_matrix(document, key, lens)
     counts = PINHOLE_COUNTS if lens == "pinhole" else (4,)
     source, name = files.first(DISTORTION, number, f"{counts[0]} distortion coefficients ({lens})")
-    params |= lens_parameters(source, name, lens, counts)
+    coefficients = lens_parameters(source, name, lens, counts)
+    if (stated, lens, len(coefficients)) == (None, "pinhole", 4):
+        _check_pinhole(source.at(name), coefficients)
+    params |= coefficients
     if lens == "omnidir":
         holder, xi_key = xi or files.first(XI, number, "Mei's xi, a number")
         params["xi"] = float(holder.array(xi_key, "Mei's xi, a number", (1,))[0])
@@ -257,7 +169,17 @@ def _read_camera(files: _Files, number: int, size: tuple[int, int] | None) -> Ca
         return Camera(CAMERA_MODELS[lens], image, params)
 
 
-def _read_lens(files: _Files, number: int, implied: str) -> str:
+def _check_pinhole(where: str, coefficients: dict[str, float]) -> None:
+    """Tell that four coefficients are taken for a pinhole's, or refuse those that can hardly be."""
+    remedy = "`model: fisheye` or `model: pinhole`, in the file or in another one beside it"
+    if max(abs(coefficients["p1"]), abs(coefficients["p2"])) > LARGEST_TANGENTIAL:
+        found = shown(list(coefficients.values()))
+        raise InvalidInput(f"{where} is {found}, more of a fisheye's than a pinhole's; expected {remedy}")
+    log.warning("%s: taken for a pinhole's k1 k2 p1 p2; a word on the lens would be %s", where, remedy)
+
+
+def _read_lens(files: Files, number: int) -> str | None:
+    """The lens that the files state."""
     for document, key in (*files.of_camera(FLAGS, number), *files.holders(FLAGS)):
         word = str(document.values[key]).lower()
         if word not in YES_OR_NO:
@@ -269,10 +191,10 @@ def _read_lens(files: _Files, number: int, implied: str) -> str:
         if word not in LENSES:
             raise InvalidInput(f"{document.at(key)} is {shown(word)}; expected pinhole, fisheye or omnidir")
         return LENSES[word]
-    return implied
+    return None
 
 
-def _read_size(files: _Files, number: int, given: tuple[int, int] | None) -> tuple[int, int]:
+def _read_size(files: Files, number: int, given: tuple[int, int] | None) -> tuple[int, int]:
     """The image size of that camera, or else of any; `given` where no file has one."""
     for document, key in (*files.of_camera(SIZE, number), *files.holders(SIZE)):
         with blaming(document.at(key)):
@@ -290,12 +212,12 @@ def _read_size(files: _Files, number: int, given: tuple[int, int] | None) -> tup
 
 def _recognises(source: Source) -> bool:
     patterns = [pattern for pair in (("{}",), *PAIRS, *FROM_ZERO) for pattern in pair]
-    numbered = set(_named(MATRIX, patterns))
+    numbered = set(named(MATRIX, patterns))
     head = source.head.lstrip()
     has_header = head.startswith(("%YAML", "<?xml", "<opencv_storage")) or "opencv-matrix" in head
-    if source.keys & {*numbered, *ROTATION[:3], *TRANSLATION[:2]} or (has_header and source.keys):
+    if source.keys & (numbered | MARKS) or (has_header and source.keys):
         return True
-    return bool(source.keys) and any(part.values.keys() & set(MATRIX) for part in _parts(source.document))
+    return bool(source.keys) and any(part.values.keys() & set(MATRIX) for part in parts_of(source.document))
 
 
 def _texts(rig: Rig, name: str) -> dict[str, str]:
