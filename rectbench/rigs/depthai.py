@@ -54,7 +54,8 @@ def _cameras(file: Section) -> dict[str, Section]:
 
 def _socket(number: float) -> str:
     """CAM_A, the one that depthai once called RGB, is socket 0."""
-    return f"CAM_{chr(ord('A') + int(number))}" if 0 <= number < 26 else f"{number:g}"
+    known = 0 <= number < 26 and number.is_integer()
+    return f"CAM_{chr(ord('A') + int(number))}" if known else f"{number:g}"
 
 
 def _left_and_right_first(file: Section, names: list[str]) -> list[str]:

@@ -213,9 +213,8 @@ def _read_size(files: Files, number: int, given: tuple[int, int] | None) -> tupl
 def _recognises(source: Source) -> bool:
     patterns = [pattern for pair in (("{}",), *PAIRS, *FROM_ZERO) for pattern in pair]
     numbered = set(named(MATRIX, patterns))
-    head = source.head.lstrip()
-    has_header = head.startswith(("%YAML", "<?xml", "<opencv_storage")) or "opencv-matrix" in head
-    if source.keys & (numbered | MARKS) or (has_header and source.keys):
+    has_matrix = "opencv-matrix" in source.head or "<opencv_storage" in source.head
+    if source.keys & (numbered | MARKS) or (has_matrix and source.keys):
         return True
     return bool(source.keys) and any(part.values.keys() & set(MATRIX) for part in parts_of(source.document))
 
