@@ -35,6 +35,7 @@ from rectbench.rigs.formats import (
     single,
 )
 from rectbench.rigs.native import dump
+from rectbench.rigs.opencv_keys import MATRIX
 from rectbench.rigs.rig import Rig
 from rectbench.rigs.sources import Source
 
@@ -87,7 +88,7 @@ def _recognises(source: Source) -> bool:
 def _is_chain(source: Source) -> bool:
     """Whether a file has cameras by Kalibr's names; one with a matrix is a calibration of OpenCV's."""
     cameras = [source.document.values[key] for key in source.keys if CAMERA.fullmatch(key)]
-    return any(not (isinstance(camera, dict) and "camera_matrix" in camera) for camera in cameras)
+    return any(not (isinstance(camera, dict) and camera.keys() & set(MATRIX)) for camera in cameras)
 
 
 def _read(sources: Sequence[Source], given: Given) -> Rig:
