@@ -8,8 +8,10 @@
 | KANNALA_BRANDT | mu mv u0 v0, k2 k3 k4 k5 of r = theta + k2 theta^3 + ... | kannala-brandt |
 | SCARAMUZZA | `poly_parameters`, `inv_poly_parameters`, `affine_parameters` ac ad ae cx cy | ocam |
 
-Pixel (0, 0) is the centre of a pixel. The file does not say where the camera stands.
-All but SCARAMUZZA are written, with a third file for the pose.
+Pixel (0, 0) is the centre of a pixel. Where the camera stands VINS-Mono's configuration says, which holds a
+camera of its own: `extrinsicRotation` and `extrinsicTranslation`, or `body_T_cam0`, take its points to the
+body (IMU), in metres. A file that is a camera alone does not say it. All but SCARAMUZZA are written, with a
+third file for the pose.
 """
 
 from __future__ import annotations
@@ -20,11 +22,12 @@ from typing import Any
 import cv2
 
 from rectbench.cameras import Camera
+from rectbench.cameras.arrays import FloatArray
 from rectbench.rigs.documents import Section, blaming
-from rectbench.rigs.formats import CameraFormat, Given, View, Writing, layout_of
+from rectbench.rigs.formats import CameraFormat, Given, View, Writing, layout_of, rigid
 from rectbench.rigs.ocamcalib import stretched
 from rectbench.rigs.pose import pose_text
-from rectbench.rigs.rig import Rig
+from rectbench.rigs.rig import Rig, checked_rotation
 from rectbench.rigs.sources import Source
 
 RADTAN = {name: name for name in ("k1", "k2", "p1", "p2")}
@@ -33,6 +36,9 @@ RATIONAL = RADTAN | {name: name for name in ("k3", "k4", "k5", "k6")}
 MEI = {"gamma1": "fx", "gamma2": "fy", "u0": "cx", "v0": "cy"}
 KANNALA_BRANDT = {"mu": "fx", "mv": "fy", "u0": "cx", "v0": "cy"}
 KANNALA_BRANDT_RADIAL = {"k2": "k1", "k3": "k2", "k4": "k3", "k5": "k4"}
+BODY = "body_T_cam0"
+EXTRINSIC = ("extrinsicRotation", "extrinsicTranslation")
+
 MODELS = ("PINHOLE", "PINHOLE_FULL", "MEI", "KANNALA_BRANDT", "SCARAMUZZA")
 
 DISTORTION, PROJECTION, MIRROR = "distortion_parameters", "projection_parameters", "mirror_parameters"
@@ -60,7 +66,20 @@ def read_view(source: Source, given: Given) -> View:
     size = file.sides("image_width", "image_height", given.size)
     model, params = READERS[kind](file)
     with blaming(source.path):
-        return View(source.path, Camera(model, size, params))
+        return View(source.path, Camera(model, size, params), _pose(file))
+
+
+def _pose(file: Section) -> FloatArray | None:
+    """T_body_camera [4, 4], or None where the file does not tell."""
+    if BODY in file:
+        return file.rigid(BODY, "the pose from camera to body, metres")
+    if not all(key in file for key in EXTRINSIC):
+        return None
+    R_key, t_key = EXTRINSIC
+    R = file.array(R_key, "a 3x3 rotation from camera to body", (9,)).reshape(3, 3)
+    t = file.array(t_key, "three metres", (3,))
+    with blaming(file.at(R_key)):
+        return rigid(checked_rotation(R, "it"), t)
 
 
 def _pinhole(file: Section) -> Lens:

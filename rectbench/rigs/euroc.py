@@ -34,11 +34,12 @@ def read_view(source: Source, given: Given) -> View:
 
 
 def _read_lens(file: Section) -> tuple[str, dict[str, float]]:
-    kind = file.values.get("distortion_model", "none")
+    expected = ", ".join(MODELS)
+    kind = file.text("distortion_model", expected) if "distortion_model" in file else "none"
     if file.values.get("camera_model", "pinhole") != "pinhole":
         raise file.fault("camera_model", "pinhole")
     if kind not in MODELS:
-        raise file.fault("distortion_model", ", ".join(MODELS))
+        raise file.fault("distortion_model", expected)
     model, order = MODELS[kind]
     focal = file.numbers("intrinsics", f"4 finite numbers ({' '.join(FOCAL)})", 4)
     params = dict(zip(FOCAL, focal, strict=True))

@@ -13,7 +13,7 @@ from rectbench.cameras.arrays import FloatArray
 from rectbench.cameras.equivalents import equal_cameras
 from rectbench.cameras.lens import lens_named
 from rectbench.errors import InvalidInput, UnknownName
-from rectbench.rigs.documents import blaming
+from rectbench.rigs.documents import blaming, one_line, shown
 from rectbench.rigs.rig import Rig
 from rectbench.rigs.sources import Source
 
@@ -23,6 +23,8 @@ UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
 LONGEST_BASELINE_M = 10.0
 """A longer baseline is rather one in millimetres; it is believed where the unit is stated."""
 
+MAX_NAMES = 20
+"""Of a file's cameras, as many are named in an error."""
 
 POSE_FILE = (
     "a third file with the pose, `R_right_left: [[...], ...]` and `t_right_left: [x, y, z]`, or "
@@ -171,6 +173,17 @@ def rigid(R: Any, t: Any) -> FloatArray:
     T = np.eye(4)
     T[:3, :3], T[:3, 3] = R, t
     return T
+
+
+def chosen(names: Sequence[str], given: Given, file: str) -> tuple[str, str]:
+    """The left and the right of a file's cameras: those asked for, or else its first two."""
+    for name in given.cameras or ():
+        if name not in names:
+            known = ", ".join(one_line(name) for name in names[:MAX_NAMES])
+            raise InvalidInput(f"{file}: has no camera {shown(name)}; expected two of {known}")
+    if len(names) < 2:
+        raise InvalidInput(f"{file}: holds {len(names)} cameras; expected two at least")
+    return given.cameras or (names[0], names[1])
 
 
 def single(sources: Sequence[Source]) -> Source:

@@ -1,8 +1,11 @@
 """Kalibr's `camchain.yaml`, and OpenVINS' `kalibr_imucam_chain.yaml`: cam0 (left), cam1 (right).
 
+OpenVINS' `estimator_config.yaml` leads to its chain by `relative_config_imucam`.
+
 The projections and their numbers are those of Kalibr's wiki, "Supported models" and "YAML formats".
 The pose is `T_cn_cnm1` of cam1, which takes points of cam0 to cam1; where that is missing, the two
 cameras' `T_cam_imu` (points of the IMU to the camera; OpenVINS may write its inverse, `T_imu_cam`).
+A camera without `camera_model` is a pinhole, as Kalibr's offspring leave it out.
 Of a longer chain any two cameras make a rig.
 Translations are metres, pixel (0, 0) is the centre of a pixel, there is no skew. Written are cam0, cam1
 and its `T_cn_cnm1`.
@@ -32,6 +35,7 @@ from rectbench.rigs.formats import (
     single,
 )
 from rectbench.rigs.native import dump
+from rectbench.rigs.opencv_keys import MATRIX
 from rectbench.rigs.rig import Rig
 from rectbench.rigs.sources import Source
 
@@ -66,33 +70,61 @@ LAYOUTS = {
 are no camera that it has."""
 
 
+OFFSPRING = {
+    ("pinhole", "rational_polynomial"): Layout("pinhole", FOCAL, (*RADTAN, "k3", "k4", "k5", "k6")),
+    ("pinhole", "plumb_bob"): Layout("pinhole", FOCAL, (*RADTAN, "k3")),
+}
+"""What others put into a chain, and Kalibr itself does not read."""
+
+CAMERA = re.compile("cam[0-9]{1,2}")
+CONFIG = "relative_config_imucam"
+"""Where OpenVINS' configuration names its chain."""
+
+
 def _recognises(source: Source) -> bool:
-    return any(re.fullmatch("cam[0-9]", key) for key in source.keys)
+    return _is_chain(source) or CONFIG in source.keys
+
+
+def _is_chain(source: Source) -> bool:
+    """Whether a file has cameras by Kalibr's names; one with a matrix is a calibration of OpenCV's."""
+    cameras = [source.document.values[key] for key in source.keys if CAMERA.fullmatch(key)]
+    return any(not (isinstance(camera, dict) and camera.keys() & set(MATRIX)) for camera in cameras)
 
 
 def _read(sources: Sequence[Source], given: Given) -> Rig:
     """The rig of cam0 (left) and cam1 (right), or of the two asked for; others are left out."""
-    chain = single(sources).document
+    source = _chain(sources)
+    chain = source.document
     names = _chosen(chain, given)
     left = chain.section(names[0], "the first camera, the left one")
     right = chain.section(names[1], "the second camera; a rig takes two")
     left_camera, right_camera = _read_camera(left, given.size), _read_camera(right, given.size)
     key, T = _read_pose(chain, *names)
-    return assembled(left_camera, right_camera, T, given, key, sources[0].name)
+    return assembled(left_camera, right_camera, T, given, key, source.name)
+
+
+def _chain(sources: Sequence[Source]) -> Source:
+    """The chain among the files of a folder, or the one that a configuration names."""
+    chains = [source for source in sources if _is_chain(source)]
+    configs = [source for source in sources if source not in chains and CONFIG in source.keys]
+    if configs and not chains:
+        config = single(configs)
+        return config.beside(config.document.text(CONFIG, "the name of the cameras' file"))
+    return single(chains if configs else sources)
 
 
 def _chosen(chain: Section, given: Given) -> tuple[str, str]:
     names = given.cameras or ("cam0", "cam1")
     for name in names:
-        if given.cameras and (name not in chain or not re.fullmatch("cam[0-9]", name)):
-            known = ", ".join(key for key in chain.values if re.fullmatch("cam[0-9]", key))
+        if given.cameras and (name not in chain or not CAMERA.fullmatch(name)):
+            known = ", ".join(key for key in chain.values if CAMERA.fullmatch(key))
             raise InvalidInput(f"{chain.file}: has no camera {shown(name)}; expected two of {known}")
     return names
 
 
 def _read_pose(chain: Section, left: str, right: str) -> tuple[str, FloatArray]:
     """Where the pose is, and the transformation from the left camera to the right one."""
-    first, last = sorted((left, right))
+    first, last = sorted((left, right), key=lambda name: int(name[3:]))
     links = [
         chain.section(f"cam{place}", "a camera") for place in range(int(first[3:]) + 1, int(last[3:]) + 1)
     ]
@@ -113,14 +145,16 @@ def _from_imu(camera: Section) -> FloatArray:
 
 
 def _read_camera(section: Section, size: tuple[int, int] | None) -> Camera:
-    projection = section.text("camera_model", "pinhole, omni, ds or eucm")
-    known = [distortion for name, distortion in LAYOUTS if name == projection]
+    expected = "pinhole, omni, ds or eucm"
+    projection = section.text("camera_model", expected) if "camera_model" in section else "pinhole"
+    layouts = LAYOUTS | OFFSPRING
+    known = [distortion for name, distortion in layouts if name == projection]
     if not known:
-        raise section.fault("camera_model", "pinhole, omni, ds or eucm")
+        raise section.fault("camera_model", expected)
     distortion = section.values.get("distortion_model", "none")
     if distortion not in known:
         raise section.fault("distortion_model", f"{', '.join(known)} with {projection}")
-    layout = LAYOUTS[projection, distortion]
+    layout = layouts[projection, distortion]
     params = _read_parameters(section, "intrinsics", layout.intrinsics)
     if layout.distortion:
         params |= _read_parameters(section, "distortion_coeffs", layout.distortion)

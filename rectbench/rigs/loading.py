@@ -12,25 +12,33 @@ from pathlib import Path
 
 from rectbench.errors import InvalidInput, Unavailable, UnknownName
 from rectbench.rigs import (
+    anipose,
     basalt,
     boofcv,
     camodocal,
     colmap,
+    depthai,
+    easymocap,
     euroc,
     kalibr,
     kitti,
     kitti360,
     matlab,
+    mccalib,
     middlebury,
     mrcal,
     native,
+    ncamera,
     ocamcalib,
+    okvis,
     opencv,
     orbslam,
+    ost,
     pose,
     ros,
     stella,
     vins,
+    zed,
 )
 from rectbench.rigs.documents import checked_size, one_line, shown
 from rectbench.rigs.formats import CameraFormat, Given, RigFormat, assembled, rig_of_views
@@ -47,6 +55,8 @@ RIG_FORMATS: tuple[RigFormat, ...] = (
     kitti360.FORMAT,
     kitti.FORMAT,
     middlebury.FORMAT,
+    zed.FORMAT,
+    ost.FORMAT,
     kalibr.FORMAT,
     basalt.FORMAT,
     vins.FORMAT,
@@ -54,12 +64,19 @@ RIG_FORMATS: tuple[RigFormat, ...] = (
     boofcv.FORMAT,
     orbslam.FORMAT,
     stella.FORMAT,
+    ncamera.FORMAT,
+    okvis.FORMAT,
+    depthai.FORMAT,
+    anipose.FORMAT,
+    mccalib.FORMAT,
+    easymocap.FORMAT,
 )
 """Formats of whole rigs, asked in this order; what only one of them has comes first."""
 
 CAMERA_FORMATS: tuple[CameraFormat, ...] = (
     mrcal.FORMAT,
     ocamcalib.FORMAT,
+    ost.CAMERA_FORMAT,
     camodocal.FORMAT,
     ros.FORMAT,
     euroc.FORMAT,
@@ -196,6 +213,7 @@ def _read_cameras(sources: list[Source], given: Given) -> Rig:
     views = [format.read(source, given) for source in sources if (format := _camera_format(source))]
     others = [source for source in sources if not _camera_format(source)]
     if len(views) != 2:
+        _ = [other.document for other in others]  # what is damaged says so itself
         files = "a file" if len(views) == 1 else f"one of {len(views)} files"
         raise InvalidInput(
             f"{views[0].where}: is {files} with one camera; expected two of them, left and right"

@@ -9,10 +9,15 @@
 | image | `image_width` and `image_height`, or `imageSize`, `image_size`, `cameraResolution` |
 | lens | `model` (or `camera_model`): pinhole, fisheye or omnidir; or `fisheye_model: 1` |
 
+Instead of 1 and 2 a file may have the pairs of `PAIRS`, such as `K_left` and `K_right`, or a section for each
+camera, such as `left_camera` and `right_camera`, with the pose beside them or in a section `stereo`. Where
+there is a matrix 0, cameras 0 and 1 are left and right.
+
 X_right = R X_left + T, as `stereoCalibrate` gives it, in the unit of the board's squares: metres unless
 the caller says otherwise. Several files complete each other; a file for each camera is read in the
-order given, left first. Four distortion coefficients mean a pinhole camera unless the file says
-`fisheye`. Where the cameras differ in lens or size, `model_1`, `imageSize_1` and the like tell them apart.
+order given, left first. Four distortion coefficients of which no file says whether they are a pinhole's or a
+fisheye's are taken for a pinhole's, which the log tells, or refused where they can hardly be. Where the
+cameras differ in lens or size, `model_1`, `imageSize_1` and the like tell them apart.
 Pixel (0, 0) is the centre of a pixel; K's skew counts for a fisheye (K[0, 1] = alpha fx) and an
 omnidirectional camera, as in OpenCV's functions, and `projectPoints` has none for a pinhole.
 
@@ -22,9 +27,8 @@ xi_1 xi_2.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Sequence
-from dataclasses import dataclass
-from itertools import islice
+import logging
+from collections.abc import Collection, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -36,25 +40,30 @@ from rectbench.cameras.arrays import FloatArray
 from rectbench.errors import InvalidInput
 from rectbench.rigs.documents import Section, blaming, checked_size, shown
 from rectbench.rigs.formats import Given, RigFormat, Writing, assembled, layout_of, rigid
+from rectbench.rigs.opencv_keys import (
+    DISTORTION,
+    FLAGS,
+    FROM_ZERO,
+    MARKS,
+    MATRIX,
+    MODEL,
+    PAIRS,
+    ROTATION,
+    SIDES,
+    SIX,
+    SIZE,
+    TRANSLATION,
+    XI,
+    Files,
+    named,
+    parts_of,
+)
 from rectbench.rigs.rig import Rig
 from rectbench.rigs.sources import Source
 
-MATRIX = ("M", "K", "cameraMatrix", "camera_matrix", "CameraMatrix", "Camera_Matrix")
-DISTORTION = (
-    "D",
-    "distCoeffs",
-    "dist_coeffs",
-    "distortion_coefficients",
-    "DistCoeffs",
-    "Distortion_Coefficients",
-)
-XI = ("xi",)
-ROTATION = ("R", "rvec", "om")
-TRANSLATION = ("T", "tvec")
-SIX = "extrinsic_parameters"
-SIZE = ("imageSize", "image_size", "ImageSize", "cameraResolution")
-SIDES = ("image_width", "image_height")
-MODEL = ("model", "camera_model")
+log = logging.getLogger("rectbench.rigs")
+
+YES_OR_NO = {"0": False, "0.0": False, "false": False, "1": True, "1.0": True, "true": True}
 
 FOCAL = ("fx", "fy", "cx", "cy")
 CAMERA_MODELS = {"pinhole": "pinhole", "fisheye": "kannala-brandt", "omnidir": "unified"}
@@ -69,6 +78,9 @@ LAYOUTS = {
 SUFFIXES = (".yml", ".yaml", ".xml", ".json")
 PINHOLE_COUNTS = (4, 5, 8, 12, 14)
 """Lengths of OpenCV's distortion vector; the last two of 14 tilt the sensor."""
+
+LARGEST_TANGENTIAL = 0.02
+"""Of p1 and p2 of a pinhole; what is larger, third or fourth of four, is rather a fisheye's k3 or k4."""
 
 LENSES = {
     "pinhole": "pinhole",
@@ -104,8 +116,13 @@ def lens_parameters(file: Section, key: str, lens: str, counts: Collection[int])
     values = file.values.get(key)
     if 0 in counts and values in ([], None):
         return {}
-    distortion = file.array(key, f"{expected} distortion coefficients ({lens})", counts).tolist()
+    expected = f"{expected} distortion coefficients ({lens})"
+    # ROS drivers, and depthai, fill the vector of a fisheye up with zeros to that of a pinhole.
+    filled = PINHOLE_COUNTS if lens == "fisheye" else ()
+    distortion = file.array(key, expected, {*counts, *filled}).tolist()
     order = ORDERS[lens]
+    if any(distortion[len(order) :]) and lens == "fisheye":
+        raise file.fault(key, expected)
     if any(distortion[len(order) :]):
         raise InvalidInput(
             f"{file.at(key)} tilts the sensor (tau); expected its last two of 14 coefficients 0"
@@ -114,13 +131,13 @@ def lens_parameters(file: Section, key: str, lens: str, counts: Collection[int])
 
 
 def _read(sources: Sequence[Source], given: Given) -> Rig:
-    files = _Files([source.document for source in sources])
+    files = Files([part for source in sources for part in parts_of(source.document)])
     left, right = (_read_camera(files, number, given.size) for number in (1, 2))
     where, T = _read_pose(files)
     return assembled(left, right, T, given, f"{files}: {where}", sources[0].name)
 
 
-def _read_pose(files: _Files) -> tuple[str, FloatArray]:
+def _read_pose(files: Files) -> tuple[str, FloatArray]:
     """Under which keys the pose is, and T_right_left."""
     for document, key in files.holders((SIX,)):
         if files.of_pair(document) and not any(files.holders(ROTATION)):
@@ -132,55 +149,18 @@ def _read_pose(files: _Files) -> tuple[str, FloatArray]:
     return f"{rotation_key}, {translation_key}", rigid(R, t)
 
 
-@dataclass(frozen=True)
-class _Files:
-    """Files that complete each other; what one lacks is looked for in the next."""
-
-    documents: list[Section]
-
-    def __str__(self) -> str:
-        return " + ".join(document.file for document in self.documents)
-
-    def holders(self, keys: tuple[str, ...]) -> Iterator[tuple[Section, str]]:
-        return ((document, key) for document in self.documents for key in keys if key in document)
-
-    def of_camera(self, keys: tuple[str, ...], number: int) -> Iterator[tuple[Section, str]]:
-        """Numbered keys anywhere, or else the number-th file that speaks of a camera of its own."""
-        yield from self.holders(tuple(f"{key}{separator}{number}" for key in keys for separator in ("", "_")))
-        owners = (document for document in self.documents if any(key in document for key in MATRIX))
-        for document in islice(owners, number - 1, number):
-            yield from ((document, key) for key in keys if key in document)
-
-    def of_pair(self, document: Section) -> bool:
-        """Whether a file speaks of two cameras; in one of a single camera, extrinsics are the board's."""
-        return any(f"{key}{separator}2" in document for key in MATRIX for separator in ("", "_"))
-
-    def first(self, keys: tuple[str, ...], number: int, expected: str) -> tuple[Section, str]:
-        """Document and key where camera `number` has one of `keys`."""
-        found = next(self.of_camera(keys, number), None)
-        if found is None:
-            numbered = " or ".join(f"{key}{number}" for key in keys[:3])
-            raise InvalidInput(f"{self}: {numbered} is missing; expected {expected}")
-        return found
-
-    def pose(self, keys: tuple[str, ...], expected: str, sizes: tuple[int, ...]) -> tuple[str, FloatArray]:
-        """Key and numbers of one half of the pose."""
-        for document, key in self.holders(keys):
-            return key, document.array(key, expected, sizes)
-        raise InvalidInput(
-            f"{self}: {' or '.join(keys)} is missing; expected {expected}"
-            " (intrinsics and extrinsics in two files are read as a list of both)"
-        )
-
-
-def _read_camera(files: _Files, number: int, size: tuple[int, int] | None) -> Camera:
+def _read_camera(files: Files, number: int, size: tuple[int, int] | None) -> Camera:
     document, key = files.first(MATRIX, number, "a 3x3 camera matrix")
     xi = next(files.of_camera(XI, number), None)
-    lens = _read_lens(files, number, "pinhole" if xi is None else "omnidir")
+    stated = _read_lens(files, number)
+    lens = stated or ("pinhole" if xi is None else "omnidir")
     params = camera_matrix(document, key, lens)
     counts = PINHOLE_COUNTS if lens == "pinhole" else (4,)
     source, name = files.first(DISTORTION, number, f"{counts[0]} distortion coefficients ({lens})")
-    params |= lens_parameters(source, name, lens, counts)
+    coefficients = lens_parameters(source, name, lens, counts)
+    if (stated, lens, len(coefficients)) == (None, "pinhole", 4):
+        _check_pinhole(source.at(name), coefficients)
+    params |= coefficients
     if lens == "omnidir":
         holder, xi_key = xi or files.first(XI, number, "Mei's xi, a number")
         params["xi"] = float(holder.array(xi_key, "Mei's xi, a number", (1,))[0])
@@ -189,19 +169,32 @@ def _read_camera(files: _Files, number: int, size: tuple[int, int] | None) -> Ca
         return Camera(CAMERA_MODELS[lens], image, params)
 
 
-def _read_lens(files: _Files, number: int, implied: str) -> str:
-    for document, key in files.holders(("fisheye_model",)):
-        if document.number(key, "0 or 1") != 0:
+def _check_pinhole(where: str, coefficients: dict[str, float]) -> None:
+    """Tell that four coefficients are taken for a pinhole's, or refuse those that can hardly be."""
+    remedy = "`model: fisheye` or `model: pinhole`, in the file or in another one beside it"
+    if max(abs(coefficients["p1"]), abs(coefficients["p2"])) > LARGEST_TANGENTIAL:
+        found = shown(list(coefficients.values()))
+        raise InvalidInput(f"{where} is {found}, more of a fisheye's than a pinhole's; expected {remedy}")
+    log.warning("%s: taken for a pinhole's k1 k2 p1 p2; a word on the lens would be %s", where, remedy)
+
+
+def _read_lens(files: Files, number: int) -> str | None:
+    """The lens that the files state."""
+    for document, key in (*files.of_camera(FLAGS, number), *files.holders(FLAGS)):
+        word = str(document.values[key]).lower()
+        if word not in YES_OR_NO:
+            raise document.fault(key, "0 or 1")
+        if YES_OR_NO[word]:
             return "fisheye"
     for document, key in (*files.of_camera(MODEL, number), *files.holders(MODEL)):
         word = str(document.values[key]).lower()
         if word not in LENSES:
             raise InvalidInput(f"{document.at(key)} is {shown(word)}; expected pinhole, fisheye or omnidir")
         return LENSES[word]
-    return implied
+    return None
 
 
-def _read_size(files: _Files, number: int, given: tuple[int, int] | None) -> tuple[int, int]:
+def _read_size(files: Files, number: int, given: tuple[int, int] | None) -> tuple[int, int]:
     """The image size of that camera, or else of any; `given` where no file has one."""
     for document, key in (*files.of_camera(SIZE, number), *files.holders(SIZE)):
         with blaming(document.at(key)):
@@ -209,8 +202,7 @@ def _read_size(files: _Files, number: int, given: tuple[int, int] | None) -> tup
         stated = Section(document.file, "", {key: width, f"{key} (height)": height})
         return stated.sides(key, f"{key} (height)", given)
     for document, key in (*files.of_camera(SIDES, number), *files.holders(SIDES)):
-        end = key.removeprefix(SIDES[0]).removeprefix(SIDES[1])
-        return document.sides(f"{SIDES[0]}{end}", f"{SIDES[1]}{end}", given)
+        return document.sides(key.replace(*SIDES[::-1]), key.replace(*SIDES), given)
     if given is None:
         raise InvalidInput(
             f"{files}: image_width is missing; expected it and image_height, or `size=` beside the file"
@@ -219,10 +211,12 @@ def _read_size(files: _Files, number: int, given: tuple[int, int] | None) -> tup
 
 
 def _recognises(source: Source) -> bool:
-    numbered = {f"{key}{end}" for key in MATRIX for end in ("", "1", "2", "_1", "_2")}
-    head = source.head.lstrip()
-    has_header = head.startswith(("%YAML", "<?xml", "<opencv_storage")) or "opencv-matrix" in head
-    return bool(source.keys & (numbered | {*ROTATION, *TRANSLATION})) or (has_header and bool(source.keys))
+    patterns = [pattern for pair in (("{}",), *PAIRS, *FROM_ZERO) for pattern in pair]
+    numbered = set(named(MATRIX, patterns))
+    has_matrix = "opencv-matrix" in source.head or "<opencv_storage" in source.head
+    if source.keys & (numbered | MARKS) or (has_matrix and source.keys):
+        return True
+    return bool(source.keys) and any(part.values.keys() & set(MATRIX) for part in parts_of(source.document))
 
 
 def _texts(rig: Rig, name: str) -> dict[str, str]:

@@ -2,7 +2,8 @@
 
 ORB-SLAM3: `Camera1.*`, `Camera2.*` (older files: `Camera.*`), `Camera.type` PinHole or KannalaBrandt8,
 and `Stereo.T_c1_c2` (older: `Tlr`), which takes points of the right camera to the left one, metres.
-Rectified images have Camera1 alone, and the baseline `Stereo.b`.
+Rectified images have Camera1 alone, and the baseline `Stereo.b`; in ORB-SLAM2's settings, Camera and
+`Camera.bf`, the baseline times fx. A `DepthMapFactor` marks the settings of an RGB-D camera, of no rig.
 ORB-SLAM2: `LEFT.K`, `LEFT.D`, `LEFT.R`, `LEFT.P` and `RIGHT.*`, as `cv2.stereoRectify` gives them; P[0, 3] of
 RIGHT is -fx' B, see `rectbench.rigs.ros`. Four coefficients in LEFT.D are still the pinhole's.
 """
@@ -40,8 +41,27 @@ def _read(sources: Sequence[Source], given: Given) -> Rig:
         left = _read_camera(file, "Camera1", given)
         T = rigid(np.eye(3), [-file.number("Stereo.b", "metres"), 0.0, 0.0])
         return assembled(left, left, T, given, file.at("Stereo.b"), sources[0].name)
+    if "LEFT.K" not in file and "RIGHT.K" not in file:
+        return _read_side_by_side(file, given, sources[0].name)
     views = [_read_rectified(file, side, given) for side in ("LEFT", "RIGHT")]
     return rig_of_views(views, given, sources[0].name)
+
+
+def _read_side_by_side(file: Section, given: Given, name: str) -> Rig:
+    """The rectified pair of `Camera.bf`; a distortion there would be one that nobody undoes."""
+    params = {key: file.number(f"Camera.{key}", "pixels") for key in ("fx", "fy", "cx", "cy")}
+    distortion = [f"Camera.{key}" for key in ("k1", "k2", "p1", "p2", "k3") if f"Camera.{key}" in file]
+    for key in distortion:
+        if file.number(key, "0") != 0:
+            raise file.fault(key, "0 of rectified images, or LEFT.K, LEFT.D and the like of others")
+    if params["fx"] <= 0:
+        raise file.fault("Camera.fx", "pixels above 0")
+    size = file.sides("Camera.width", "Camera.height", given.size)
+    with blaming(file.at("Camera.fx")):
+        camera = Camera("pinhole", size, params)
+    baseline = file.number("Camera.bf", "pixels times metres") / params["fx"]
+    T = rigid(np.eye(3), [-baseline, 0.0, 0.0])
+    return assembled(camera, camera, T, given, file.at("Camera.bf"), name)
 
 
 def _read_calibrated(file: Section, given: Given, name: str) -> Rig:
@@ -77,7 +97,9 @@ def _read_rectified(file: Section, side: str, given: Given) -> View:
 
 
 def _recognises(source: Source) -> bool:
-    return bool({"LEFT.K", "RIGHT.K", "Camera1.fx", "Camera2.fx", *POSES} & source.keys)
+    keys = source.keys
+    is_stereo = "Camera.bf" in keys and "DepthMapFactor" not in keys
+    return is_stereo or bool({"LEFT.K", "RIGHT.K", "Camera1.fx", "Camera2.fx", *POSES} & keys)
 
 
 FORMAT = RigFormat("orbslam", "ORB-SLAM2 and ORB-SLAM3 stereo settings (YAML)", _recognises, _read)

@@ -1,13 +1,14 @@
-"""YAML, JSON and XML as plain strings, lists and mappings, from files that nobody vouches for.
+"""YAML, JSON, XML and TOML as plain strings, lists and mappings, from files that nobody vouches for.
 
-Nothing here constructs an object, follows an alias or expands an entity, and what may be nested and
-counted is bounded, so that a small file cannot become a long wait or a full memory.
+Nothing here constructs an object or expands an entity, and what may be nested and counted is bounded, with
+what an alias repeats counted again, so that a small file cannot become a long wait or a full memory.
 """
 
 from __future__ import annotations
 
 import json
 import re
+import tomllib
 from typing import Any
 from xml.parsers import expat
 
@@ -17,6 +18,7 @@ MAX_CHARACTERS = 1 << 21
 """A longer text takes the parsers of JSON and XML a second, and a hundred megabytes."""
 
 MAX_YAML_CHARACTERS = 1 << 20
+MAX_TOML_CHARACTERS = 1 << 18
 MAX_VALUES = 60_000
 """Values in a file; stereo calibrations that keep every image point of their board have some ten thousand."""
 
@@ -35,6 +37,15 @@ OPENCV_TAGS = {
 TAGS = {*PLAIN_TAGS, *OPENCV_TAGS, "!"}
 NODES = {yaml.AliasEvent, yaml.ScalarEvent, yaml.SequenceStartEvent, yaml.MappingStartEvent}
 
+# Possessive, so that a long file of blank lines is walked once.
+TOML = re.compile(r"(?:\s++|#[^\n]*+)*+(?:\[[\w.\"-]++\][ \t]*+(?:#[^\n]*+)?+\r?+\n|[\w-]++ = )")
+"""How a TOML file begins: a table's name alone in its line, or `key = `."""
+
+DOTTED = re.compile(
+    r"""(?<![\w-])(?:(?:[\w-]{1,60}+|"(?:[^"\\\n]|\\.){0,60}+"|'[^'\n]{0,60}+')[ \t]{0,9}+\.[ \t]{0,9}+){8}"""
+)
+"""A key of more parts than tables have; Python's parser takes the square of their number in memory."""
+
 LOADER: Any = getattr(yaml, "CBaseLoader", yaml.BaseLoader)
 
 
@@ -43,13 +54,14 @@ class Malformed(ValueError):
 
 
 def parse(text: str) -> Any:
-    """A YAML, JSON or XML text as plain data; its numbers are still strings in YAML and XML.
+    """A YAML, JSON, XML or TOML text as plain data; its numbers are still strings in YAML and XML.
 
     Raises Malformed, with the line at which the text ends making sense.
     """
     if len(text) > MAX_CHARACTERS:
         raise Malformed(f"is larger than {MAX_CHARACTERS >> 10} KiB")
     reader = {"{": _json_or_yaml, "[": _json_or_yaml, "<": _xml}.get(text.lstrip()[:1], _yaml)
+    reader = _toml if TOML.match(text) else reader
     try:
         return reader(text)
     except RecursionError:
@@ -101,9 +113,16 @@ def _yaml(text: str) -> Any:
     except (yaml.YAMLError, ValueError, OverflowError) as error:
         raise error if isinstance(error, Malformed) else Malformed(f"is no YAML ({error})") from None
     filled = [document for document in documents if document != ""]  # ROS ends a message with ---
-    if len(filled) > 1:
+    if any(_message(document) != _message(filled[0]) for document in filled[1:]):
         raise Malformed("holds several YAML documents")
     return filled[0] if filled else ""
+
+
+def _message(document: Any) -> Any:
+    """What a ROS topic says again and again, each time with another number and time in its header."""
+    if not isinstance(document, dict):
+        return document
+    return {key: value for key, value in document.items() if key != "header"}
 
 
 def _as_yaml(text: str) -> str:
@@ -118,15 +137,25 @@ def _as_yaml(text: str) -> str:
 def _yaml_documents(text: str) -> list[Any]:
     stack: list[list[Any]] = [[]]
     starts: list[Any] = []
+    anchors: dict[str, Any] = {}
+    count = 0
     events: Any = yaml.parse(text, Loader=LOADER)
-    for count, event in enumerate(events):
+    for event in events:
         kind = type(event)
-        if count > MAX_VALUES:
-            raise Malformed(f"has over {MAX_VALUES} values")
+        count += 1
+        if kind is yaml.DocumentStartEvent:
+            anchors.clear()
         if kind in NODES:
             _check_tag(event)
         if kind is yaml.ScalarEvent:
-            stack[-1].append(event.value)
+            _add(event.value, event.anchor, stack, anchors)
+        elif kind is yaml.AliasEvent:
+            value = _named(event, anchors)
+            size, height = _extent(value)
+            count += size
+            if len(stack) + height > MAX_DEPTH:
+                raise Malformed("is nested too deeply")
+            stack[-1].append(value)
         elif kind in (yaml.SequenceStartEvent, yaml.MappingStartEvent):
             if len(stack) > MAX_DEPTH:
                 raise Malformed("is nested too deeply")
@@ -134,15 +163,38 @@ def _yaml_documents(text: str) -> list[Any]:
             starts.append(event)
         elif kind in (yaml.SequenceEndEvent, yaml.MappingEndEvent):
             items, start = stack.pop(), starts.pop()
-            stack[-1].append(items if kind is yaml.SequenceEndEvent else _yaml_mapping(items, start))
+            whole = items if kind is yaml.SequenceEndEvent else _yaml_mapping(items, start)
+            _add(whole, start.anchor, stack, anchors)
+        if count > MAX_VALUES:
+            raise Malformed(f"has over {MAX_VALUES} values")
     return stack[0]
 
 
+def _add(value: Any, anchor: str | None, stack: list[list[Any]], anchors: dict[str, Any]) -> None:
+    stack[-1].append(value)
+    if anchor is not None:
+        anchors[anchor] = value
+
+
+def _named(alias: Any, anchors: dict[str, Any]) -> Any:
+    """What an alias repeats; PyYAML writes one where two cameras share a list, such as the resolution."""
+    if alias.anchor not in anchors:
+        raise yaml.MarkedYAMLError(problem="an alias of nothing before it", problem_mark=alias.start_mark)
+    return anchors[alias.anchor]
+
+
+def _extent(value: Any) -> tuple[int, int]:
+    """How many values there are inside a value, itself counted, and how deep they are nested."""
+    if not isinstance(value, list | dict):
+        return 1, 0
+    extents = [_extent(item) for item in (value.values() if isinstance(value, dict) else value)]
+    return 1 + sum(size for size, _ in extents), 1 + max((height for _, height in extents), default=0)
+
+
 def _check_tag(event: Any) -> None:
-    tag = "" if isinstance(event, yaml.AliasEvent) else event.tag
+    tag = None if isinstance(event, yaml.AliasEvent) else event.tag
     if tag is not None and tag not in TAGS:
-        problem = f"the tag {tag[:60]}" if tag else "an alias"
-        raise yaml.MarkedYAMLError(problem=problem, problem_mark=event.start_mark)
+        raise yaml.MarkedYAMLError(problem=f"the tag {tag[:60]}", problem_mark=event.start_mark)
 
 
 def _yaml_mapping(items: list[Any], start: Any) -> dict[str, Any]:
@@ -157,10 +209,25 @@ def _mapping(pairs: list[tuple[Any, Any]]) -> dict[str, Any]:
     for key, value in pairs:
         if not isinstance(key, str) or len(key) > MAX_KEY:
             raise Malformed("has a key that is no word")
+        if key == "<<":
+            raise Malformed("merges mappings with <<")
         if key in mapping:
             raise Malformed(f"has the key {key[:40]} twice")
         mapping[key] = value
     return mapping
+
+
+def _toml(text: str) -> Any:
+    if len(text) > MAX_TOML_CHARACTERS:
+        raise Malformed(f"is larger than {MAX_TOML_CHARACTERS >> 10} KiB")
+    if DOTTED.search(text):
+        raise Malformed("has a key of over 8 parts")
+    try:
+        content = tomllib.loads(text)
+    except ValueError as error:  # also a number of more digits than Python takes
+        raise Malformed(f"is no TOML ({error})") from None
+    _check_depth(content)
+    return content
 
 
 def _xml(text: str) -> Any:

@@ -1,7 +1,8 @@
 """A file with nothing but the pose of two cameras, for formats whose files have one camera each.
 
 Either the project's own keys `R_right_left` and `t_right_left`, or OpenCV's `R` (3x3 or a rotation
-vector; `rvec`, `om`) and `T` (`tvec`): X_right = R X_left + T, as `stereoCalibrate` gives it.
+vector; `rvec`, `om`) and `T` (`tvec`): X_right = R X_left + T, as `stereoCalibrate` gives it. RTAB-Map's
+`*_pose.yaml` has the same under `rotation_matrix` and `translation_matrix`.
 """
 
 from __future__ import annotations
@@ -15,8 +16,8 @@ from rectbench.rigs.native import dump
 from rectbench.rigs.rig import Rig, checked_rotation
 from rectbench.rigs.sources import Source
 
-ROTATION = ("R_right_left", "R", "rvec", "om", "Om", "rotation_vector")
-TRANSLATION = ("t_right_left", "T", "tvec", "t", "translation_vector")
+ROTATION = ("R_right_left", "R", "rvec", "om", "Om", "rotation_vector", "rotation_matrix")
+TRANSLATION = ("t_right_left", "T", "tvec", "t", "translation_vector", "translation_matrix")
 
 
 def recognises(source: Source) -> bool:

@@ -60,7 +60,11 @@ LAYOUTS = {
 
 def read_view(source: Source, given: Given) -> View:
     """The camera in the file and, where its projection matrix tells, its place in the rectified frame."""
-    file = source.document
+    return view_of(source.document, given)
+
+
+def view_of(file: Section, given: Given) -> View:
+    """The same of the content of a file."""
     kind = file.text("distortion_model", ", ".join(MODELS)) if "distortion_model" in file else "plumb_bob"
     if kind not in MODELS:
         raise file.fault("distortion_model", ", ".join(MODELS))
@@ -72,7 +76,8 @@ def read_view(source: Source, given: Given) -> View:
     size = file.sides(width, height, given.size)
     with blaming(f"{file.at(K)}, {D}"):
         camera = Camera("kannala-brandt" if lens == "fisheye" else "pinhole", size, params)
-    return View(source.path, camera, rectified_place(file, _key(file, "R"), _key(file, "P")))
+    where = file.at("").removesuffix(": ")
+    return View(where, camera, rectified_place(file, _key(file, "R"), _key(file, "P")))
 
 
 def rectified_place(file: Section, R_key: str, P_key: str) -> FloatArray | None:
@@ -81,7 +86,7 @@ def rectified_place(file: Section, R_key: str, P_key: str) -> FloatArray | None:
         return None
     P = file.array(P_key, "the 3x4 projection matrix", (12,)).reshape(3, 4)
     R = file.array(R_key, "the 3x3 rectification matrix", (9,)).reshape(3, 3)
-    if not np.any(R):  # how an uncalibrated camera is published
+    if not np.any(R) or not np.any(P):  # how an uncalibrated camera is published
         return None
     with blaming(file.at(R_key)):
         R = checked_rotation(R, "it")

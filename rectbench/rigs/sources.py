@@ -11,7 +11,9 @@ from pathlib import Path
 from rectbench.errors import InvalidInput
 from rectbench.rigs.documents import MAX_BYTES, Section, as_text, parse_document, read_bytes, shown
 
-SUFFIXES = {".yaml", ".yml", ".xml", ".json", ".txt", ".bin", ".cameramodel", ".cfg", ".conf", ""}
+SUFFIXES = {
+    *(".yaml", ".yml", ".xml", ".json", ".toml", ".txt", ".bin", ".cameramodel", ".cfg", ".conf", ".ini", ""),
+}
 """What calibrations are called; in a folder, other files are not looked at."""
 
 MAX_NAME = 200

@@ -2,8 +2,9 @@
 
 `body_T_cam0` takes points of camera 0 to the body (IMU), in metres, as the VINS-Fusion maintainers
 state it. `cam0_calib` and `cam1_calib` name the CamOdoCal files of the cameras, beside the configuration.
-VINS-Mono's own configuration holds one camera and is no rig. Written is what a configuration says of its
-cameras, the left one standing for the body; the topics and all about the IMU are left to its user.
+VINS-Mono's own configuration holds one camera; two of them are read as `rectbench.rigs.camodocal` says.
+Written is what a configuration says of its cameras, the left one standing for the body; the topics and all
+about the IMU are left to its user.
 """
 
 from __future__ import annotations
@@ -45,7 +46,7 @@ def _named(name: str, sources: Sequence[Source]) -> Source | None:
 
 
 def _recognises(source: Source) -> bool:
-    return bool({"cam0_calib", "body_T_cam0"} & source.keys)
+    return "cam0_calib" in source.keys or ("body_T_cam0" in source.keys and "model_type" not in source.keys)
 
 
 def _texts(rig: Rig, name: str) -> dict[str, str]:

@@ -52,8 +52,40 @@ FRAGMENTS = [
         "é",
     ),
     *("true", "rows: 3", "cols: 99999999", "cam2:", "data:", "dt: 9999d"),
+    *("!!python/name:os.system", "!!python/tuple", "%TAG ! tag:yaml.org,2002:python/", "!!merge <<"),
+    *("[a.b.c]\n", "[[a]]\n", "a = 1\n", '"""', "'''", "=", "]]", "\x85", "\u2028", "\u202e", "\U0001f4f7"),
+    *("\uff11\uff12", "\u0663", "1_0", "+.5", "0x1p3", "1e", "--1", "1,5", "-0.0", "NaN", "Infinity"),
 ]
-DEEP = ["[", "{a: ", '{"a":', "- ", "<a>", "((", "? ", "!a "]
+VALUES = [
+    "null",
+    "~",
+    "true",
+    "[]",
+    "{}",
+    "''",
+    "[[]]",
+    "[1]",
+    "{a: 1}",
+    '{"a": 1}',
+    "word",
+    "1e999",
+    "[nan]",
+]
+DEEP = ["[", "{a: ", '{"a":', "- ", "<a>", "((", "? ", "!a ", "&a [", "a.", "[a.", '"a".']
+LEVELS = 12
+BOMBS = [
+    "a0: &a0 [x, x]\n"
+    + "".join(f"a{n}: &a{n} [{', '.join([f'*a{n - 1}'] * 9)}]\n" for n in range(1, LEVELS)),
+    "a: &a [*a, *a]\n",
+    "<!DOCTYPE a [<!ENTITY b0 'bb'>"
+    + "".join(f"<!ENTITY b{n} '{f'&b{n - 1};' * 9}'>" for n in range(1, LEVELS))
+    + f"]><a>&b{LEVELS - 1};</a>",
+    "<!DOCTYPE a [<!ENTITY b SYSTEM 'file:///dev/zero'>]><a>&b;</a>",
+    '{"a": ' * 2000,
+    "k" * 5000 + ": 1\n",
+    "n: " + "9" * 5000 + "\n",
+]
+"""What is short and unfolds, or is followed, to something without end."""
 
 Mutation = Callable[[str, np.random.Generator], str]
 
@@ -124,6 +156,58 @@ def piece_repeated(text: str, rng: np.random.Generator) -> str:
     return text[:start] + piece * int(rng.choice([2, 10, 1000])) + text[start:]
 
 
+def value_replaced(text: str, rng: np.random.Generator) -> str:
+    """What follows a key becomes of another kind."""
+    places = list(re.finditer(r"[:=][ \t]*[^\s,}]{1,40}", text))
+    if not places:
+        return text
+    start, end = places[rng.integers(len(places))].span()
+    return f"{text[: start + 1]} {pick(rng, VALUES)}{text[end:]}"
+
+
+def number_doubled(text: str, rng: np.random.Generator) -> str:
+    """A list or a matrix becomes longer by one."""
+    numbers = list(re.finditer(r"-?\d{1,20}\.\d*(e[+-]?\d+)?(,? ?)", text))
+    if not numbers:
+        return text
+    found = numbers[rng.integers(len(numbers))]
+    return text[: found.start()] + found[0] + ((found[2] and found[0]) or ", 1.0") + text[found.end() :]
+
+
+def key_repeated(text: str, rng: np.random.Generator) -> str:
+    """A key comes a second time, with another value."""
+    keys = list(re.finditer(r'"?[\w.]{1,40}"?[ \t]*[:=]', text))
+    if not keys:
+        return text
+    key = keys[rng.integers(len(keys))]
+    return (
+        f"{text[: key.start()]}{key[0]} {pick(rng, VALUES)}{pick(rng, [',', chr(10)])} {text[key.start() :]}"
+    )
+
+
+def bomb_put_in(text: str, rng: np.random.Generator) -> str:
+    lines = text.splitlines(keepends=True)
+    place = rng.integers(len(lines) + 1)
+    return "".join(lines[:place]) + pick(rng, BOMBS) + "".join(lines[place:])
+
+
+def blown_up(text: str, rng: np.random.Generator) -> str:
+    """A piece again and again, up to the largest file that is read and beyond."""
+    start = rng.integers(len(text) + 1)
+    piece = text[start : start + rng.integers(1, 80)]
+    return (
+        text[:start]
+        + piece * (int(rng.choice([1 << 16, 1 << 20, 5 << 20])) // max(1, len(piece)))
+        + text[start:]
+    )
+
+
+def lines_ended(text: str, rng: np.random.Generator) -> str:
+    """Line ends of another system, or a byte-order mark before the text."""
+    ends = ["\r\n", "\r", "\n\r", "\n\n"]
+    return "\ufeff" + text if rng.integers(2) else text.replace("\n", pick(rng, ends))
+
+
 def piece_moved(text: str, rng: np.random.Generator) -> str:
     start, end, place = np.sort(rng.integers(len(text) + 1, size=3))
     return text[:start] + text[end:place] + text[start:end] + text[place:]
@@ -143,12 +227,47 @@ MUTATIONS: list[Mutation] = [
     nested_deeply,
     piece_repeated,
     piece_moved,
+    value_replaced,
+    value_replaced,
+    number_doubled,
+    key_repeated,
+    bomb_put_in,
+    lines_ended,
 ]
+RARE = 200
+"""Of so many inputs one is blown up to megabytes; such a one takes the time of a hundred others."""
+
+PIECES = [b"nan", b"-1", b"\0" * 8, b"\xff" * 8, b"\0\0\0\0\0\0\xf0\x7f", b"9" * 400, b"\n", b"# ", b"1 2 3 "]
 
 
-def damaged(text: str, rng: np.random.Generator) -> bytes:
-    """`text` after one to three mutations."""
+def damaged(content: bytes, rng: np.random.Generator) -> bytes:
+    """A file after one to three mutations."""
+    if b"\0" in content:
+        return binary_damaged(content, rng)
+    text = content.decode()
     for _ in range(rng.integers(1, 4)):
         if text:
             text = MUTATIONS[rng.integers(len(MUTATIONS))](text, rng)
-    return text.encode(("utf-8", "latin-1")[rng.integers(2)], "replace")
+    if rng.integers(RARE) == 0:
+        text = blown_up(text, rng)
+    encoding = ("utf-8", "utf-8", "utf-8", "latin-1", "utf-16")[rng.integers(5)]
+    return text.encode(encoding, "replace")
+
+
+def binary_damaged(content: bytes, rng: np.random.Generator) -> bytes:
+    """A binary file cut short, with bits flipped, a piece put in, doubled or lost, one to three times."""
+    for _ in range(rng.integers(1, 4)):
+        start = int(rng.integers(len(content) + 1))
+        end = start + int(rng.choice([0, 1, 4, 8, 60]))
+        kind = rng.integers(5)
+        if kind == 0:
+            content = content[:start]
+        elif kind == 1 and content:
+            flipped = bytearray(content)
+            for place in rng.integers(len(content), size=rng.integers(1, 5)):
+                flipped[place] ^= 1 << rng.integers(8)
+            content = bytes(flipped)
+        else:
+            piece = [PIECES[rng.integers(len(PIECES))], content[start:end] * 2, b""][kind % 3]
+            content = content[:start] + piece + content[end:]
+    return content

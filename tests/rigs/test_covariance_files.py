@@ -225,7 +225,7 @@ OWN = "parameters: [pose.rx, pose.ry, left.k1]\ncovariance: [[1, 0, 0], [0, 2, 0
 def test_damaged_files_give_a_covariance_or_one_line(tmp_path: Path, text: str) -> None:
     path = tmp_path / "covariance.yaml"
     for number in range(150):
-        path.write_bytes(damaged(text, np.random.default_rng(number)))
+        path.write_bytes(damaged(text.encode(), np.random.default_rng(number)))
         message = str(path)
         try:
             assert isinstance(load_covariance(path, PINHOLES), RigCovariance)

@@ -55,9 +55,9 @@ def test_a_folder_is_read_as_its_files_are(tmp_path: Path, name: str) -> None:
 
 
 def test_each_format_has_an_example() -> None:
-    stems = {name.split("-")[0].rstrip("23") for name in EXAMPLES} | {"kalibr"}
     owned_elsewhere = {"native", "colmap", "mrcal", "matlab-camera"}
-    assert set(calibration_formats()) - owned_elsewhere <= stems
+    for format in set(calibration_formats()) - owned_elsewhere:
+        assert any(name.startswith(format) for name in EXAMPLES), format
 
 
 @pytest.mark.parametrize("name", ["ocamcalib", "camodocal", "matlab-fisheye"])

@@ -95,9 +95,26 @@ def test_a_file_for_each_camera_and_one_for_the_pose_make_a_rig(tmp_path: Path) 
     assert (rig.left.params["cx"], rig.right.params["cx"]) == (K1[0, 2], K2[0, 2])
 
 
-def test_four_coefficients_mean_pinhole_unless_fisheye_is_said(tmp_path: Path) -> None:
-    assert load(tmp_path, opencv_file(**IMAGE, **INTRINSICS, **POSE)).left.model == "pinhole"
-    assert load(tmp_path, opencv_file(**WHOLE_RIG)).left.model == "kannala-brandt"
+RADTAN = {"D1": np.array([[-0.28, 0.07, 2e-4, 1.8e-5]]), "D2": np.array([[-0.27, 0.06, -1e-4, 3e-5]])}
+UNTOLD = {key: value for key, value in WHOLE_RIG.items() if key != "model"}
+
+
+def test_four_coefficients_of_no_lens_stated_are_a_pinhole_s_and_told(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    rig = load(tmp_path, opencv_file(**UNTOLD | RADTAN))
+    assert (rig.left.model, rig.left.params["p1"]) == ("pinhole", 2e-4)
+    assert "D1: taken for a pinhole's k1 k2 p1 p2" in caplog.text
+    caplog.clear()
+    assert load(tmp_path, opencv_file(**UNTOLD | RADTAN, model="pinhole")).left == rig.left
+    assert not caplog.records
+
+
+def test_four_coefficients_that_are_hardly_a_pinhole_s_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(InvalidInput, match="more of a fisheye's than a pinhole's; expected `model: fisheye`"):
+        load(tmp_path, opencv_file(**UNTOLD))
+    rig = load(tmp_path, opencv_file(**UNTOLD), opencv_file(model="fisheye"))
+    assert (rig.left.model, rig.left.params["k3"]) == ("kannala-brandt", -0.0458)
 
 
 @pytest.mark.parametrize(
@@ -109,7 +126,7 @@ def test_four_coefficients_mean_pinhole_unless_fisheye_is_said(tmp_path: Path) -
             "D2 or distCoeffs2 or dist_coeffs2 is missing; expected 4 distortion coefficients (fisheye)",
         ),
         ({"R": None}, "R or rvec or om is missing; expected a 3x3 rotation"),
-        ({"T": None}, "T or tvec is missing; expected three metres"),
+        ({"T": None}, "T or tvec or t is missing; expected three metres"),
         ({"image_width": None}, "image_width is missing; expected whole pixels"),
         (
             {"image_width": None, "image_height": None},
@@ -123,8 +140,8 @@ def test_four_coefficients_mean_pinhole_unless_fisheye_is_said(tmp_path: Path) -
         ({"K1": np.full((3, 3), np.nan)}, "K1 is ['.Nan', "),
         ({"K1": -np.diag([1.0, 1, -1])}, "K1, D1: "),
         (
-            {"D1": np.zeros((1, 5))},
-            "D1 is ['0.', '0.', '0.', '0.', '0.']; expected 4 distortion coefficients (fisheye)",
+            {"D1": np.ones((1, 5))},
+            "D1 is ['1.', '1.', '1.', '1.', '1.']; expected 4 distortion coefficients (fisheye)",
         ),
         ({"R": np.eye(3) * 2}, "R, T: R_right_left is no rotation"),
         ({"T": np.zeros(3)}, "R, T: the baseline is zero"),
