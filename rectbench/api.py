@@ -132,8 +132,8 @@ def rectify_images(
         seed=_checked_seed(seed),
         without_calibration=rig is None,
     )
-    pairs = image_pairs(str(left), str(right))
-    _, images = first_readable(pairs)
+    pairing = image_pairs(str(left), str(right))
+    _, images = first_readable(pairing.pairs)
     if rig is None:
         calibrated, matches = uncalibrated(images, seed=seed)
     else:
@@ -142,8 +142,8 @@ def rectify_images(
         matches = None
     if max_angle_deg is not None:
         calibrated = calibrated.within(max_angle_deg)
-    bars = progress_for(False if len(pairs) == 1 else progress)
-    return rectify_images(pairs, calibrated, wanted, Path(out), matches=matches, progress=bars)
+    bars = progress_for(False if len(pairing.pairs) == 1 else progress)
+    return rectify_images(pairing, calibrated, wanted, Path(out), matches=matches, progress=bars)
 
 
 def estimate_pose(

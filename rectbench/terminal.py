@@ -242,10 +242,10 @@ def show_rectified(made: RectifiedImages) -> None:
             )
             table.add_row(words, f"{median:.2f} px in the median, {p95:.2f} px at 95 %, of {count:.0f}")
     screen.print(table)
+    for reason in made.left_out:
+        screen.print(Text(f"left out: {reason}", style="yellow"), soft_wrap=True)
     for result in made.pairs:
-        if result.reason:
-            screen.print(Text(f"left out: {result.reason}", style="yellow"), soft_wrap=True)
-        elif result.note:
+        if result.note:
             screen.print(Text(f"{result.pair.name}: {result.note}", style="dim"), soft_wrap=True)
     if made.warning:
         screen.print(Text(f"warning: {made.warning}", style="yellow"), soft_wrap=True)

@@ -18,6 +18,8 @@ Words = tuple[str, ...]
 """A path cut into words and numbers in lower case, "/" between folders; the suffix comes last."""
 
 FOLDER = "/"
+FROM_LEFT, FROM_RIGHT = "<left", "<right"
+"""The first words of images that the user has said which side they are of."""
 CAMERAS = frozenset({"cam", "camera", "sensor", "eye"})
 IMAGES = frozenset({"image", "img", "im", "view"})
 """What is counted where a number follows: cameras rather than images, where a name has both."""
@@ -103,8 +105,11 @@ def paired_files(files: Iterable[Path], root: Path) -> Pairing:
 def paired_folders(
     left: Path, right: Path, files_left: Iterable[Path], files_right: Iterable[Path]
 ) -> Pairing:
-    """The pairs of the images in a folder of left ones and a folder of right ones, which have names alike."""
-    sides = (("left", left, files_left), ("right", right, files_right))
+    """The pairs of the images in a folder of left ones and a folder of right ones.
+
+    Their names may be the same, or differ in a word for the side.
+    """
+    sides = ((FROM_LEFT, left, files_left), (FROM_RIGHT, right, files_right))
     return _paired(
         {
             file: (side, FOLDER, *_words(file.relative_to(folder)))
@@ -155,7 +160,13 @@ def _neighbours(words: Mapping[Path, Words], way: _Sides) -> _Neighbours:
 
 
 def _right_names(words: Words, way: _Sides) -> Iterator[Words]:
-    """The names with the other side in one place or more."""
+    """The names with the other side in one place or more; where the sides are given, in any or none."""
+    if words[0] == FROM_RIGHT:
+        return
+    if words[0] == FROM_LEFT:
+        for rest in (words[1:], *_right_names(words[1:], way)):
+            yield (FROM_RIGHT, *rest)
+        return
     turned = {i: right for i in range(len(words)) if (right := way.right_word(words, i)) is not None}
     places = list(turned)[:MOST_SIDES]
     for count in range(1, len(places) + 1):

@@ -14,7 +14,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from rectbench.bench.choosing import Choice, best_method, uncalibrated_methods
-from rectbench.bench.image_pairs import ImagePair
+from rectbench.bench.pairing import FilePair, LeftOut, Pairing
 from rectbench.bench.plugins import registry
 from rectbench.bench.progress import Progress
 from rectbench.bench.rectified_files import (
@@ -71,7 +71,7 @@ class Wanted:
 class PairResult:
     """How one pair fared."""
 
-    pair: ImagePair
+    pair: FilePair
     reason: str = ""
     """Why it was left out; empty where it was rectified."""
     features: RowError | None = None
@@ -103,12 +103,15 @@ class RectifiedImages:
     choice: Choice | None
     """How the method was chosen, where it was."""
     pairs: tuple[PairResult, ...]
+    lonely: tuple[LeftOut, ...]
+    """Images without a partner."""
     files: tuple[Path, ...]
 
     @property
-    def left_out(self) -> tuple[PairResult, ...]:
-        """The pairs that could not be rectified."""
-        return tuple(result for result in self.pairs if result.reason)
+    def left_out(self) -> tuple[str, ...]:
+        """Why pairs and images were left out, one line each."""
+        unpaired = tuple(f"{image.path}: {image.reason}" for image in self.lonely)
+        return tuple(result.reason for result in self.pairs if result.reason) + unpaired
 
     @property
     def rows(self) -> dict[str, float]:
@@ -141,7 +144,7 @@ ELSEWHERE_PX = 5.0
 
 
 def rectify_images(
-    pairs: Sequence[ImagePair],
+    images: Pairing,
     rig: Rig,
     wanted: Wanted,
     out: Path,
@@ -160,6 +163,7 @@ def rectify_images(
     where that is so of all, and for a wrong method, option or frame; Unsupported where no method that is
     asked for can serve the rig. Nothing is written then.
     """
+    pairs = images.pairs
     readable, first = first_readable(pairs, rig)
     trusted = _Trusted.of(first, rig, wanted.seed) if wanted.measured_pairs else _Trusted()
     choice, own, rect = _rectification(rig, wanted, first, matches, trusted)
@@ -178,14 +182,14 @@ def rectify_images(
     measured = {round(place) for place in np.linspace(0, len(pairs) - 1, wanted.measured_pairs)}
     results: list[PairResult] = []
 
-    def rectified(place: int, pair: ImagePair) -> PairResult:
-        images = first if pair is readable else _images_of(pair, rig)
+    def rectified(place: int, pair: FilePair) -> PairResult:
+        both = first if pair is readable else _images_of(pair, rig)
         stem = f"{{side}}/{pair.name}" if len(pairs) > 1 else "{side}"
-        files.extend(_written(_image_files(images, resamplers, stem), out))
+        files.extend(_written(_image_files(both, resamplers, stem), out))
         if pair is readable:
             return trusted.measured(pair, rect)
         return (
-            _Trusted.of(images, rig, wanted.seed).measured(pair, rect)
+            _Trusted.of(both, rig, wanted.seed).measured(pair, rect)
             if place in measured
             else PairResult(pair)
         )
@@ -197,7 +201,9 @@ def rectify_images(
             except InvalidInput as error:
                 results.append(PairResult(pair, reason=str(error)))
             advance()
-    made = RectifiedImages(method, rect, costs, own_costs, choice, tuple(results), tuple(files))
+    made = RectifiedImages(
+        method, rect, costs, own_costs, choice, tuple(results), images.left_out, tuple(files)
+    )
     return replace(made, files=(*files, *_written(_summary_files(made), out)))
 
 
@@ -224,7 +230,7 @@ class _Trusted:
         """The board's, where there is one."""
         return self.board or self.features
 
-    def measured(self, pair: ImagePair, rect: Rectification) -> PairResult:
+    def measured(self, pair: FilePair, rect: Rectification) -> PairResult:
         """The pair with the row errors of these correspondences."""
         features, board = (m and row_error(rect, *m) for m in (self.features, self.board))
         return PairResult(pair, features=features, board=board, note=self.note)
@@ -256,7 +262,7 @@ def _rectification(
     return None, None if rect is own else own, rect
 
 
-def first_readable(pairs: Sequence[ImagePair], rig: Rig | None = None) -> tuple[ImagePair, Images]:
+def first_readable(pairs: Sequence[FilePair], rig: Rig | None = None) -> tuple[FilePair, Images]:
     """The first pair that can be read and, where a rig is given, has its size, with its images.
 
     Raises InvalidInput with the first reason where there is none.
@@ -273,7 +279,7 @@ def first_readable(pairs: Sequence[ImagePair], rig: Rig | None = None) -> tuple[
     )
 
 
-def _images_of(pair: ImagePair, rig: Rig | None) -> Images:
+def _images_of(pair: FilePair, rig: Rig | None) -> Images:
     images = read_images(pair.left, pair.right)
     cameras = () if rig is None else (rig.left, rig.right)
     for path, image, camera in zip((pair.left, pair.right), images, cameras, strict=False):
@@ -315,6 +321,7 @@ def _summary_files(made: RectifiedImages) -> Files:
     if made.choice:
         metrics["choice"] = {"why": made.choice.why, "methods": made.choice.table.to_dict("records")}
     metrics |= {"rows": made.rows, "pairs": [result.columns for result in made.pairs]}
+    metrics["left_out"] = list(made.left_out)
     files = {"metrics.json": (json.dumps(_finite(metrics), indent=1, ensure_ascii=False) + "\n").encode()}
     if len(made.pairs) > 1:
         files["pairs.csv"] = pd.DataFrame([r.columns for r in made.pairs]).to_csv(index=False).encode()
