@@ -1,9 +1,9 @@
 """Corners of a calibration board that both images show, matched by the board itself.
 
 They are the matches to trust: the board says which corner is which, so that none is wrong, and a corner is
-found to a few hundredths of a pixel. Of exact corners, rendered through perspective and fisheye lenses with
-noise, `cv2.cornerSubPix` is off by 0.03 px (RMS of a coordinate) without a common shift; OpenCV's own
-chessboard corners, only where the search starts here, are off by up to half a pixel under a fisheye lens.
+found to a few hundredths of a pixel. On boards rendered through perspective and fisheye lenses with noise,
+`cv2.cornerSubPix` is off by 0.02 to 0.06 px (RMS of a coordinate), without a common shift. OpenCV's own
+chessboard corners, from which the search starts here, are off by up to half a pixel under a fisheye lens.
 """
 
 from __future__ import annotations
