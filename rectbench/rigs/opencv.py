@@ -9,9 +9,9 @@
 | image | `image_width` and `image_height`, or `imageSize`, `image_size`, `cameraResolution` |
 | lens | `model` (or `camera_model`): pinhole, fisheye or omnidir; or `fisheye_model: 1` |
 
-Instead of 1 and 2 a file may have the pairs of `PAIRS`, such as `K_left` and `K_right`, or a section for each
-camera, such as `left_camera` and `right_camera`, with the pose beside them or in a section `stereo`. Where
-there is a matrix 0, cameras 0 and 1 are left and right.
+Instead of 1 and 2 a file may have the pairs of `opencv_keys`, such as `K_left` and `K_right`, or a section
+for each camera, such as `left_camera` and `right_camera`, with the pose beside them or in a section
+`stereo`. Where there is a matrix 0, cameras 0 and 1 are left and right.
 
 X_right = R X_left + T, as `stereoCalibrate` gives it, in the unit of the board's squares: metres unless
 the caller says otherwise. Several files complete each other; a file for each camera is read in the
@@ -43,6 +43,7 @@ from rectbench.rigs.formats import Given, RigFormat, Writing, assembled, layout_
 from rectbench.rigs.opencv_keys import (
     DISTORTION,
     FLAGS,
+    FROM_ONE,
     FROM_ZERO,
     MARKS,
     MATRIX,
@@ -211,7 +212,7 @@ def _read_size(files: Files, number: int, given: tuple[int, int] | None) -> tupl
 
 
 def _recognises(source: Source) -> bool:
-    patterns = [pattern for pair in (("{}",), *PAIRS, *FROM_ZERO) for pattern in pair]
+    patterns = [pattern for pair in (("{}",), *FROM_ONE, *FROM_ZERO, *PAIRS) for pattern in pair]
     numbered = set(named(MATRIX, patterns))
     has_matrix = "opencv-matrix" in source.head or "<opencv_storage" in source.head
     if source.keys & (numbered | MARKS) or (has_matrix and source.keys):

@@ -30,9 +30,9 @@ SIDES = ("image_width", "image_height")
 MODEL = ("model", "camera_model")
 FLAGS = ("fisheye_model", "fisheye", "is_fisheye")
 
+FROM_ONE = (("{}1", "{}2"), ("{}_1", "{}_2"))
+FROM_ZERO = (("{}0", "{}1"), ("{}_0", "{}_1"))
 PAIRS = (
-    ("{}1", "{}2"),
-    ("{}_1", "{}_2"),
     ("{}_left", "{}_right"),
     ("left_{}", "right_{}"),
     ("{}Left", "{}Right"),
@@ -41,10 +41,7 @@ PAIRS = (
     ("{}L", "{}R"),
     ("{}l", "{}r"),
 )
-"""How files tell the keys of the left and the right camera apart, of which the first are OpenCV's."""
-
-FROM_ZERO = (("{}0", "{}1"), ("{}_0", "{}_1"))
-"""The same for files that count from 0."""
+"""How files tell the keys of the left and the right camera apart: by numbers, as OpenCV does, or words."""
 
 SECTIONS = (
     *(("left", "right"), ("left_camera", "right_camera"), ("camera_left", "camera_right")),
@@ -86,7 +83,7 @@ class Files:
     def pairs(self) -> tuple[tuple[str, str], ...]:
         """How keys of left and right may be called here."""
         from_zero = tuple(named(MATRIX, (left,)) for left, _ in FROM_ZERO)
-        return (FROM_ZERO if any(any(self.holders(keys)) for keys in from_zero) else ()) + PAIRS
+        return (FROM_ZERO if any(any(self.holders(keys)) for keys in from_zero) else FROM_ONE) + PAIRS
 
     def of_camera(self, keys: tuple[str, ...], number: int) -> Iterator[tuple[Section, str]]:
         """Numbered keys anywhere, or else the number-th file that speaks of a camera of its own."""
