@@ -21,10 +21,10 @@ def image_pairs(left: str, right: str) -> Pairing:
     `paired_folders`; what has no partner is left out, with the reason. No two pairs have one name. Raises
     InvalidInput where there is no pair at all.
     """
-    files = _files(left, "left"), _files(right, "right")
+    lefts, rights = _files(left, "left"), _files(right, "right")
     if not (_is_many(left) or _is_many(right)):
-        return Pairing((FilePair(files[0][0].stem, files[0][0], files[1][0]),), ())
-    pairing = paired_folders(*map(_folder_of, files), *files)
+        return Pairing((FilePair(lefts[0].stem, lefts[0], rights[0]),), ())
+    pairing = paired_folders(_folder_of(lefts), _folder_of(rights), lefts, rights)
     if not pairing.pairs:
         first = pairing.left_out[0]
         raise InvalidInput(
