@@ -21,6 +21,9 @@ from rectbench.rigs.sources import Source
 FILES = {"K_": "intri.yml", "T_": "extri.yml"}
 """The two files, by how keys begin that only they have."""
 
+LONGEST_NAME = 100
+"""Letters of a camera's name; a longer one is damage, which an error need not repeat."""
+
 
 def _read(sources: Sequence[Source], given: Given) -> Rig:
     first = sources[0]
@@ -44,7 +47,12 @@ def _holder(sources: Sequence[Source], start: str) -> Source:
 
 
 def _names(source: Source) -> list[str]:
-    return [str(name) for name in source.document.section_of_list("names").values.values()]
+    file = source.document.section_of_list("names")
+    names = [file.text(place, "a camera's name") for place in file.values]
+    for place, name in zip(file.values, names, strict=True):
+        if len(name) > LONGEST_NAME:
+            raise file.fault(place, f"a camera's name of at most {LONGEST_NAME} letters")
+    return names
 
 
 def _read_view(intrinsics: Section, extrinsics: Section, name: str, given: Given) -> View:

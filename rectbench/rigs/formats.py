@@ -13,7 +13,7 @@ from rectbench.cameras.arrays import FloatArray
 from rectbench.cameras.equivalents import equal_cameras
 from rectbench.cameras.lens import lens_named
 from rectbench.errors import InvalidInput, UnknownName
-from rectbench.rigs.documents import blaming, one_line, shown
+from rectbench.rigs.documents import blaming, shown
 from rectbench.rigs.rig import Rig
 from rectbench.rigs.sources import Source
 
@@ -158,7 +158,8 @@ def rig_of_views(views: Sequence[View], given: Given, name: str, unit: str | Non
         raise InvalidInput(f"{untold.where}: does not say where its camera stands; expected {POSE_FILE}")
     if np.array_equal(left.T_shared_camera[:3, 3], right.T_shared_camera[:3, 3]):
         raise InvalidInput(f"{where}: put both cameras at one place; expected two places, or {POSE_FILE}")
-    T = inverse(right.T_shared_camera) @ left.T_shared_camera
+    with np.errstate(all="ignore"):  # what is not finite is said below
+        T = inverse(right.T_shared_camera) @ left.T_shared_camera
     return assembled(left.camera, right.camera, T, given, where, name, unit)
 
 
@@ -179,7 +180,7 @@ def chosen(names: Sequence[str], given: Given, file: str) -> tuple[str, str]:
     """The left and the right of a file's cameras: those asked for, or else its first two."""
     for name in given.cameras or ():
         if name not in names:
-            known = ", ".join(one_line(name) for name in names[:MAX_NAMES])
+            known = ", ".join(shown(name) for name in names[:MAX_NAMES])
             raise InvalidInput(f"{file}: has no camera {shown(name)}; expected two of {known}")
     if len(names) < 2:
         raise InvalidInput(f"{file}: holds {len(names)} cameras; expected two at least")
