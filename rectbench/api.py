@@ -17,7 +17,7 @@ from rectbench.cameras.arrays import FloatArray
 from rectbench.errors import InvalidInput
 from rectbench.matching.features import RATIO
 from rectbench.matching.pose import WORKING_PIXELS, PoseEstimate, pose_from_images
-from rectbench.rigs import Rig, load_rig
+from rectbench.rigs import Rig, load_rig, load_rig_of_images
 from rectbench.rigs.loading import RigSource
 from rectbench.warps import Framing, Images, Matches, Rectification, pose_problem
 
@@ -89,6 +89,7 @@ def rectify_images(
     seed: int = 0,
     max_angle_deg: float | None = None,
     unit: str | None = None,
+    cameras: Sequence[str] | None = None,
     progress: bool | None = None,
 ) -> RectifiedImages:
     """Rectify photographs into a folder: images, masks, lookup tables, descriptions, metrics.
@@ -108,8 +109,8 @@ def rectify_images(
     measured_pairs : so many pairs, spread over all, have their rows measured by their own features and, if
         they show one, a calibration board.
     seed : of random choices.
-    max_angle_deg, unit : the lenses' image circle, and what translations are in, where the calibration
-        does not tell.
+    max_angle_deg, unit, cameras : the lenses' image circle, what translations are in, and which two
+        cameras are meant, where the calibration does not tell.
     progress : a bar on stderr; where there are several pairs and a terminal by default.
 
     Returns what was made; see `rectbench.bench.rectified_images.rectify_images` for the files, and for what
@@ -138,7 +139,9 @@ def rectify_images(
         calibrated, matches = uncalibrated(images, seed=seed)
     else:
         size = images.left.shape[1], images.left.shape[0]
-        calibrated = rig if isinstance(rig, Rig) else load_rig(rig, size=size, unit=unit)
+        calibrated = (
+            rig if isinstance(rig, Rig) else load_rig_of_images(rig, size, unit=unit, cameras=cameras)
+        )
         matches = None
     if max_angle_deg is not None:
         calibrated = calibrated.within(max_angle_deg)

@@ -271,6 +271,53 @@ def test_wrong_usage_is_one_line_and_writes_nothing(shell: Shell, words: str, me
     assert not Path("out").exists()
 
 
+def test_nothing_of_another_rectification_stays_in_the_folder(shell: Shell) -> None:
+    words = ("rectify", "l/0_l.png", "r/0_r.png", "--rig", "rig.yaml", "-o", "out", "--measure", 0)
+    assert shell(*words, "-m", "conventional")[0] == 0
+    assert Path("out/opencv.yml").exists()
+    assert shell(*words, "--tables", "none")[0] == 0
+    assert {file.name for file in Path("out").iterdir()} == FILES - {
+        "maps.npz",
+        "maps.yml.gz",
+        "maps_fixed.yml.gz",
+    }
+
+
+def test_rows_that_nobody_could_measure_raise_no_alarm(shell: Shell) -> None:
+    """The frame shows a corner of the image, in which no match lies in both."""
+    words = ("--rig", "rig.yaml", "-o", "out", "--crop", "150,100,2,2")
+    code, out, _ = shell("rectify", "l/0_l.png", "r/0_r.png", *words)
+    assert code == 0
+    assert "nan px" not in out
+    assert "warning" not in out
+
+
+def test_photographs_are_never_written_over(shell: Shell) -> None:
+    for words in (("l/0_l.png", "r/0_r.png"), ("l", "r")):
+        shutil.rmtree("left", ignore_errors=True)
+        shutil.rmtree("right", ignore_errors=True)
+        single = "." in words[0]
+        for side, name in zip(("left", "right"), words, strict=True):
+            shutil.copy(name, f"{side}.png") if single else shutil.copytree(name, side)
+            for file in Path(side).glob("*_*.png"):
+                file.rename(Path(side) / f"{file.stem[0]}.png")
+        given = ("left.png", "right.png") if single else ("left", "right")
+        code, _, err = shell("rectify", *given, "--rig", "rig.yaml", "-o", ".")
+        assert code == 2
+        assert "would be overwritten" in err
+        assert not Path("rectified.yaml").exists()
+
+
+def test_two_cameras_may_differ_in_size(shell: Shell) -> None:
+    other = rb.Rig(RIG.left.scaled(0.5), RIG.right, RIG.R_right_left, RIG.t_right_left)
+    other.save("mixed.yaml", format="kalibr")
+    cv2.imwrite("half.png", cv2.resize(read("l/0_l.png"), (160, 120), interpolation=cv2.INTER_AREA))
+    code, out, err = shell("rectify", "half.png", "r/0_r.png", "--rig", "mixed.yaml", "-o", "out")
+    assert (code, err) == (0, "")
+    assert json.loads(Path("out/metrics.json").read_text())["rows"]["row_error_features_median_px"] < 0.3
+    assert "warning" not in out
+
+
 def test_the_same_command_writes_the_same_bytes(shell: Shell) -> None:
     for out in ("a", "b"):
         words = ("--rig", "rig.yaml", "-m", "best", "--measure", 1, "--tables", "fixed")

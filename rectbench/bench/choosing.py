@@ -82,7 +82,9 @@ class Choice:
             sentence += f"; next is {rivals[0].method} with {rivals[0].measured[RANKING]:.3f}"
         worse = [c.method for c in others if not _rows_are_good(c, self.candidates)]
         if worse:
-            sentence += f"; the rows of {' and '.join(worse)} are more than {ROWS_AS_GOOD_PX:g} px worse"
+            sentence += (
+                f"; not counting {' and '.join(worse)}, whose rows are over {ROWS_AS_GOOD_PX:g} px worse"
+            )
         return sentence
 
 
@@ -118,6 +120,8 @@ def best_method(
             f"methods are compared where all show the same, not in the crop {chosen.crop}; expected a "
             "coverage or fov_deg"
         )
+    if chosen.size is not None and chosen.focal_px is not None:
+        raise InvalidInput("size and focal_px together say what is shown; expected one of them to compare in")
     if chosen.fov_deg is None and chosen.coverage is None:
         chosen = replace(chosen, coverage=COVERAGE)
     problem = pose_problem(rig, images=images, matches=matches, seed=seed)

@@ -1,7 +1,7 @@
 """`rectbench-data.yaml`: what names and calibration files of a folder of photographs do not tell.
 
 rigs:
-  front: {files: [front/stereo.yaml], unit: mm, max_angle_deg: 80}
+  front: {files: [front/chain.yaml], unit: mm, max_angle_deg: 80, cameras: [cam2, cam3]}
 pairs:
   - {name: hall, left: a/17.png, right: b/23.png, rig: front}
 
@@ -29,6 +29,7 @@ class StatedRig(BaseModel):
     files: tuple[str, ...] = Field(min_length=1)
     unit: str | None = None
     max_angle_deg: float | None = Field(default=None, gt=0, le=180)
+    cameras: tuple[str, str] | None = None
 
 
 class StatedPair(BaseModel):
@@ -63,7 +64,9 @@ def read_manifest(folder: Path) -> Manifest:
         if path.stat().st_size > MOST_BYTES:
             raise InvalidInput(f"{path}: is over {MOST_BYTES >> 20} MiB; expected a list of rigs and pairs")
         document = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, yaml.YAMLError, RecursionError) as error:
+    except InvalidInput:
+        raise
+    except (OSError, ValueError, yaml.YAMLError, RecursionError) as error:
         raise InvalidInput(f"{path}: cannot be read: {' '.join(str(error).split())}") from None
     try:
         manifest = Manifest.model_validate(document or {})

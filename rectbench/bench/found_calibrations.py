@@ -10,10 +10,10 @@ from pathlib import Path
 
 from rectbench.bench.data_manifest import Manifest
 from rectbench.bench.image_circle import angle_of_mask_deg, angle_of_rim_deg
-from rectbench.bench.pairing import FilePair, LeftOut, paired_files
+from rectbench.bench.pairing import FilePair, LeftOut, camera_numbers, paired_files
 from rectbench.errors import InvalidInput
 from rectbench.matching.images import Grey, grey8, read_image
-from rectbench.rigs import Rig, is_calibration, load_rig
+from rectbench.rigs import Rig, holds_many, is_calibration, load_rig
 
 SUFFIXES = frozenset({".yaml", ".yml", ".xml", ".json", ".txt", ".bin", ".cameramodel", ".cfg", ".conf"})
 TOLD_SUFFIXES = SUFFIXES - {".txt", ".bin"}
@@ -37,12 +37,15 @@ class Calibration:
     unit: str | None = None
     max_angle_deg: float | None = None
     """The lenses' image circle, where the files do not tell it."""
+    cameras: tuple[str, str] | None = None
+    """The left and the right one, by the file's names, where it holds more than two."""
     remarks: tuple[str, ...] = field(default=(), compare=False)
     """What a reader of the report has to know about it."""
 
     def rig(self) -> Rig:
         """The rig in the files; raises InvalidInput where they hold none."""
-        rig = load_rig([str(file) for file in self.files], size=self.size, unit=self.unit)
+        files = [str(file) for file in self.files]
+        rig = load_rig(files, size=self.size, unit=self.unit, cameras=self.cameras)
         rig = replace(rig, name=self.name)
         return rig if self.max_angle_deg is None else rig.within(self.max_angle_deg)
 
@@ -52,30 +55,45 @@ def home_of(files: Sequence[Path]) -> Path:
     return Path(os.path.commonpath([file.parent for file in files]))
 
 
+def place_of(root: Path, file: str) -> Path:
+    """The file of a manifest in `root`; links are not followed, so that it stays in the folder it is in."""
+    return Path(os.path.normpath(root / file))
+
+
 def stated_calibrations(root: Path, manifest: Manifest, pairs: Sequence[FilePair]) -> list[Calibration]:
     """The calibrations that a manifest states; raises InvalidInput for files that hold none."""
     stated = []
     for name, rig in manifest.rigs.items():
-        files = tuple((root / file).resolve() for file in rig.files)
-        one = Calibration(name, files, home_of(files), unit=rig.unit, max_angle_deg=rig.max_angle_deg)
+        files = tuple(place_of(root, file) for file in rig.files)
+        one = Calibration(
+            name,
+            files,
+            home_of(files),
+            unit=rig.unit,
+            max_angle_deg=rig.max_angle_deg,
+            cameras=rig.cameras,
+        )
         stated.append(_completed(one, pairs))
     return stated
 
 
 def found_calibrations(
-    root: Path, files: Iterable[Path], pairs: Sequence[FilePair]
+    root: Path, files: Iterable[Path], pairs: Sequence[FilePair], stated: Iterable[str] = ()
 ) -> tuple[list[Calibration], list[LeftOut]]:
     """The calibrations among the files, recognised by their content, and the files that are none.
+
+    None is called as one that is `stated`.
 
     A file that holds a rig is one. Of files that do not, two whose names differ in the side are one rig,
     together with a file of their pose beside them; and what else is in one folder.
     """
     may_be = [file for file in files if file.suffix.lower() in SUFFIXES]
     known = [file for file in may_be if is_calibration(file)]
+    set_of_known = set(known)
     left_out = [
         LeftOut(file, "no calibration of a format known here")
         for file in may_be
-        if file not in known and file.suffix.lower() in TOLD_SUFFIXES
+        if file not in set_of_known and file.suffix.lower() in TOLD_SUFFIXES
     ]
     found, failed = list[Calibration](), dict[Path, str]()
     for file in known:
@@ -93,7 +111,7 @@ def found_calibrations(
             for file in one.files:
                 del failed[file]
     left_out += [LeftOut(file, reason) for file, reason in failed.items()]
-    return _distinctly_named(root, found), left_out
+    return _distinctly_named(root, found, stated), left_out
 
 
 def _groups(root: Path, files: list[Path]) -> Iterator[list[Path]]:
@@ -142,18 +160,42 @@ def _guesses(one: Calibration, size: tuple[int, int] | None) -> Iterator[Calibra
             yield replace(base, unit=UNSTATED_UNIT, remarks=(*base.remarks, told))
 
 
-def _distinctly_named(root: Path, found: Sequence[Calibration]) -> list[Calibration]:
+def _distinctly_named(root: Path, found: Sequence[Calibration], stated: Iterable[str]) -> list[Calibration]:
     """Each named after its folder; after its file, too, where the folder has several; at last by its path."""
-    homes = Counter(one.home for one in found)
+    homes, taken = Counter(one.home for one in found), set(stated)
     short = [
         one.home.name if homes[one.home] == 1 else f"{one.home.name}-{one.files[0].stem}" for one in found
     ]
-    counts = Counter(short)
-    long = ["-".join(one.files[0].relative_to(root).with_suffix("").parts) for one in found]
-    return [
-        replace(one, name=brief if counts[brief] == 1 else full)
-        for one, brief, full in zip(found, short, long, strict=True)
-    ]
+    named = []
+    for one, brief in zip(found, short, strict=True):
+        path = one.files[0].relative_to(root)
+        full, whole = "-".join(path.with_suffix("").parts), "-".join(path.parts)
+        free = (full, whole) if short.count(brief) > 1 else (brief, full, whole)
+        name = next((name for name in free if name not in taken), f"{whole}-{len(taken)}")
+        taken.add(name)
+        named.append(replace(one, name=name))
+    return named
+
+
+def with_cameras_of(one: Calibration, pair: FilePair) -> Calibration | None:
+    """The calibration with the cameras that took a pair, where its file holds more than two.
+
+    Numbers in the images' names, such as image_02 and image_03, say which they are. None where the file has
+    none of these numbers: its first two cameras are others.
+    """
+    numbers = camera_numbers(pair)
+    if numbers is None or one.cameras is not None or not holds_many(one.files[0]):
+        return one
+    left, right = numbers
+    for spelled in ("cam{}", "{:02d}", "P{}"):
+        names = spelled.format(left), spelled.format(right)
+        chosen = replace(one, name=f"{one.name}-{names[0]}-{names[1]}", cameras=names)
+        try:
+            chosen.rig()
+        except InvalidInput:
+            continue
+        return chosen
+    return None
 
 
 def within_circle(one: Calibration, pairs: Sequence[FilePair], masks: Sequence[Path]) -> Calibration:

@@ -119,6 +119,20 @@ def paired_folders(
     )
 
 
+def camera_numbers(pair: FilePair) -> tuple[int, int] | None:
+    """Which cameras took a pair, where its names number them and these are not the first two: (2, 3)."""
+    left, right = _words(pair.left), _words(pair.right)
+    if len(left) != len(right):
+        return None
+    named = {
+        (int(a), int(b))
+        for before, a, b in zip(left, left[1:], right[1:], strict=False)
+        if a != b and a.isdecimal() and b.isdecimal() and before in CAMERAS | IMAGES
+    }
+    numbers = named.pop() if len(named) == 1 else (0, 1)
+    return numbers if numbers[0] >= LAST_LEFT else None
+
+
 def _paired(words: Mapping[Path, Words]) -> Pairing:
     free, partner, doubts = dict(words), dict[Path, Path](), dict[Path, list[Path]]()
     for way in _WAYS:

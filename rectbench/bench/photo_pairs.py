@@ -20,7 +20,13 @@ def calibrated_rig(pair: PhotoTask) -> Rig:
     """The rig as its calibration files state it."""
     files = tuple(map(Path, pair.calibration))
     return Calibration(
-        pair.rig, files, files[0].parent, pair.size, pair.unit, max_angle_deg=pair.max_angle_deg
+        pair.rig,
+        files,
+        files[0].parent,
+        pair.size,
+        pair.unit,
+        max_angle_deg=pair.max_angle_deg,
+        cameras=pair.cameras,
     ).rig()
 
 

@@ -15,7 +15,9 @@ from rectbench.bench.found_calibrations import (
     Calibration,
     found_calibrations,
     home_of,
+    place_of,
     stated_calibrations,
+    with_cameras_of,
     within_circle,
 )
 from rectbench.bench.pairing import FilePair, LeftOut, paired_files, words_in
@@ -72,26 +74,31 @@ def find_photographs(folder: str | Path) -> Photographs:
     root = root.resolve()
     manifest = read_manifest(root)
     stated = _stated_pairs(root, manifest)
-    files = [file for file in _files_in(root) if file not in _stated_files(root, manifest)]
+    named_files = _stated_files(root, manifest)
+    files = [file for file in _files_in(root) if file not in named_files]
     images, masks, no_images = _images(files)
     pairing = paired_files(images, root)
     pairs = [*stated, *pairing.pairs]
     named = stated_calibrations(root, manifest, pairs)
-    found, no_calibrations = found_calibrations(root, files, pairs)
+    found, no_calibrations = found_calibrations(root, files, pairs, [one.name for one in named])
 
     served = {one: list[FilePair]() for one in (*named, *found)}
     lonely = list[LeftOut]()
     for pair in pairs:
-        own = _calibrations_of(pair, stated.get(pair), root, list(served))
+        near = _calibrations_of(pair, stated.get(pair), root, [*named, *found])
+        own = [chosen for one in near if (chosen := with_cameras_of(one, pair))]
         for one in own:
-            served[one].append(pair)
+            served.setdefault(one, []).append(pair)
         if not own:
             reason = "no calibration is beside or above it"
+            if near:
+                reason = f"{near[0].files[0].name} has many cameras, and which took it is not told"
             lonely += [LeftOut(pair.left, reason), LeftOut(pair.right, reason)]
+    used = {file for one, its in served.items() if its for file in one.files}
     lonely += [
         LeftOut(one.files[0], "no pair of images is beside or below it")
-        for one, its in served.items()
-        if not its
+        for one in (*named, *found)
+        if used.isdisjoint(one.files)
     ]
     left_out = [*no_images, *pairing.left_out, *no_calibrations, *lonely]
     left_out += [LeftOut(mask, "a mask, no photograph") for mask in masks]
@@ -118,7 +125,7 @@ def _stated_pairs(root: Path, manifest: Manifest) -> dict[FilePair, str | None]:
     """The pairs of the manifest, and their rigs where it states them."""
     return {
         FilePair(
-            pair.name or Path(pair.left).stem, (root / pair.left).resolve(), (root / pair.right).resolve()
+            pair.name or Path(pair.left).stem, place_of(root, pair.left), place_of(root, pair.right)
         ): pair.rig
         for pair in manifest.pairs
     }
@@ -127,7 +134,7 @@ def _stated_pairs(root: Path, manifest: Manifest) -> dict[FilePair, str | None]:
 def _stated_files(root: Path, manifest: Manifest) -> set[Path]:
     named = [file for pair in manifest.pairs for file in (pair.left, pair.right)]
     named += [file for rig in manifest.rigs.values() for file in rig.files]
-    return {root / MANIFEST, *((root / file).resolve() for file in named)}
+    return {root / MANIFEST, *(place_of(root, file) for file in named)}
 
 
 def _images(files: Iterable[Path]) -> tuple[list[Path], list[Path], list[LeftOut]]:
@@ -167,8 +174,9 @@ def _photo_pairs(
 ) -> Iterator[PhotoPair]:
     """The pairs in their order, once for each of their calibrations, these with their image circles."""
     circled = {one: within_circle(one, its, masks) for one, its in served.items() if its}
+    members = {one: set(its) for one, its in served.items()}
     for pair in pairs:
-        for one, its in served.items():
+        for one, its in members.items():
             if pair in its:
                 name = pair.name or home_of([pair.left, pair.right]).name
                 yield PhotoPair(name, pair.left, pair.right, circled[one])
@@ -181,6 +189,7 @@ def _distinctly_named(root: Path, pairs: list[PhotoPair]) -> Iterator[PhotoPair]
     for pair in pairs:
         name, rig = pair.name, pair.calibration.name
         if counts[name, rig] > 1:
-            name = "-".join([*home_of([pair.left, pair.right]).relative_to(root).parts, name])
+            home = home_of([pair.left, pair.right])
+            name = "-".join([*(home.relative_to(root).parts if home.is_relative_to(root) else ()), name])
         used[name, rig] += 1
         yield replace(pair, name=name if used[name, rig] == 1 else f"{name}-{used[name, rig]}")

@@ -199,6 +199,7 @@ def _photographed(
             size=calibration.size,
             unit=calibration.unit,
             max_angle_deg=calibration.max_angle_deg,
+            cameras=calibration.cameras,
         )
 
 

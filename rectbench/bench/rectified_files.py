@@ -19,6 +19,7 @@ from rectbench.warps.rectification import Side
 
 SIDES: tuple[Side, Side] = ("left", "right")
 PNG_TYPES = (np.dtype("uint8"), np.dtype("uint16"))
+SUFFIXES = (".png", ".tiff")
 SCAN_LINES = 24
 LINE_RGB = (90, 220, 90)
 GAP_PX = 8
@@ -85,7 +86,7 @@ TABLES: Mapping[str, Callable[[Rectification], Files]] = {
 
 def image_file(image: NDArray[np.generic]) -> tuple[str, bytes]:
     """The suffix and content of an image file of the same depth: PNG for 8 and 16 bits, else TIFF."""
-    suffix = ".png" if image.dtype in PNG_TYPES else ".tiff"
+    suffix = SUFFIXES[0] if image.dtype in PNG_TYPES else SUFFIXES[1]
     return suffix, _encoded(suffix, image)
 
 

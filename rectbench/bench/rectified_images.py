@@ -19,6 +19,7 @@ from rectbench.bench.plugins import registry
 from rectbench.bench.progress import Progress
 from rectbench.bench.rectified_files import (
     SIDES,
+    SUFFIXES,
     TABLES,
     Files,
     description_files,
@@ -119,22 +120,23 @@ class RectifiedImages:
         rows: dict[str, float] = {}
         for kind in ("board", "features"):
             found = [error for result in self.pairs if (error := getattr(result, kind)) is not None]
-            if found:
-                pooled = RowError(
-                    np.concatenate([error.rectified_px for error in found]),
-                    np.concatenate([error.source_px for error in found]),
-                )
+            pooled = RowError(
+                np.concatenate([error.rectified_px for error in found] or [np.empty(0)]),
+                np.concatenate([error.source_px for error in found] or [np.empty(0)]),
+            )
+            if np.isfinite(pooled.rectified_px).any():
                 rows |= _row_columns(kind, pooled)
         return rows
 
     @property
     def warning(self) -> str:
         """That images and calibration do not belong together, where the rows say so; else nothing."""
-        off = [self.rows.get(f"row_error_{kind}_source_median_px", 0.0) for kind in ("board", "features")]
-        if max(off) <= ELSEWHERE_PX:
+        known = [self.rows.get(f"row_error_{kind}_source_median_px") for kind in ("board", "features")]
+        off = next((error for error in known if error is not None), 0.0)  # a board's word goes first
+        if off <= ELSEWHERE_PX:
             return ""
         return (
-            f"rows are {max(off):.0f} source pixels off in the median: these images are not of this "
+            f"rows are {off:.0f} source pixels off in the median: these images are not of this "
             "calibration, or left and right are swapped"
         )
 
@@ -164,6 +166,7 @@ def rectify_images(
     asked for can serve the rig. Nothing is written then.
     """
     pairs = images.pairs
+    _refuse_overwriting(pairs, out)
     readable, first = first_readable(pairs, rig)
     trusted = _Trusted.of(first, rig, wanted.seed) if wanted.measured_pairs else _Trusted()
     choice, own, rect = _rectification(rig, wanted, first, matches, trusted)
@@ -171,12 +174,15 @@ def rectify_images(
     own_costs = None if own is None else frame_costs(own, rig)
     method = choice.best.method if choice else registry("methods").get(wanted.method).name
     facts = {"method": method, "options": dict(wanted.options)} | ({"chosen": choice.why} if choice else {})
+    if wanted.without_calibration:
+        facts["calibrated"] = "no: the rig below is assumed, and its baseline is 1 of an unknown unit"
     contents = description_files(rect, **facts) | mask_files(rect)
     for kind in wanted.tables:
         contents |= TABLES[kind](rect)
     resamplers = [Resampler.of(rect, side, wanted.filter) for side in SIDES]
     costs |= _averaging(resamplers)
     contents["preview.png"] = preview_file(*_resampled(first, resamplers))
+    _remove_earlier(out, contents)
     files = _written(contents, out)
 
     measured = {round(place) for place in np.linspace(0, len(pairs) - 1, wanted.measured_pairs)}
@@ -341,6 +347,25 @@ def _row_columns(kind: str, error: RowError | None) -> dict[str, float]:
     if error is None:
         return {}
     return {name.replace("row_error", f"row_error_{kind}"): value for name, value in error.columns().items()}
+
+
+def _refuse_overwriting(pairs: Sequence[FilePair], out: Path) -> None:
+    """Raise InvalidInput where an image would be written over a photograph."""
+    names = [f"{side}/{pair.name}" for pair in pairs for side in SIDES] if len(pairs) > 1 else SIDES
+    written = {(out / (name + suffix)).resolve() for name in names for suffix in SUFFIXES}
+    for photograph in (path for pair in pairs for path in (pair.left, pair.right)):
+        if photograph.resolve() in written:
+            raise InvalidInput(f"{photograph} would be overwritten; expected another folder than {out}")
+
+
+OWN_FILES = ("opencv.yml", "maps.npz", "maps.yml.gz", "maps_fixed.yml.gz", "pairs.csv", "metrics.json")
+"""What another rectification may have left in the folder, and must not lie beside this one's."""
+
+
+def _remove_earlier(folder: Path, contents: Files) -> None:
+    for name in OWN_FILES:
+        if name not in contents:
+            (folder / name).unlink(missing_ok=True)
 
 
 def _written(contents: Files, folder: Path) -> list[Path]:

@@ -65,6 +65,8 @@ class PhotoTask:
     unit: str | None
     max_angle_deg: float | None
     """The lenses' image circle, where these files leave it out."""
+    cameras: tuple[str, str] | None = None
+    """The two of files that hold more."""
 
     @property
     def images(self) -> bool:
@@ -74,12 +76,13 @@ class PhotoTask:
     @staticmethod
     def from_json(values: Mapping[str, Any]) -> PhotoTask:
         """The task of what `asdict` and JSON made of it."""
-        size = values["size"]
+        size, cameras = values["size"], values["cameras"]
         return PhotoTask(
             **{
                 **values,
                 "calibration": tuple(values["calibration"]),
                 "size": None if size is None else (size[0], size[1]),
+                "cameras": cameras and (cameras[0], cameras[1]),
             }
         )
 

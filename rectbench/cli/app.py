@@ -40,6 +40,10 @@ MethodOptions = Annotated[
     typer.Option("--option", metavar="NAME=VALUE", help="An option of the method; repeatable."),
 ]
 MethodSeed = Annotated[int, typer.Option(help="Of the method's random choices.")]
+Cameras = Annotated[
+    list[str] | None,
+    typer.Option(metavar="LEFT,RIGHT", help="Two cameras of a calibration that holds more, by its names."),
+]
 Unit = Annotated[
     str | None,
     typer.Option(help="What the calibration's translations are in, if not metres: mm, cm, in or ft."),

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from rectbench.cli.app import (
+    Cameras,
     LeftImage,
     MaxAngle,
     Method,
@@ -16,6 +17,7 @@ from rectbench.cli.app import (
     RigFiles,
     RightImage,
     Unit,
+    split_names,
 )
 
 if TYPE_CHECKING:
@@ -34,6 +36,7 @@ def pose(
     seed: Annotated[int, typer.Option(help="Of the random samples.")] = 0,
     max_angle_deg: MaxAngle = None,
     unit: Unit = None,
+    cameras: Cameras = None,
 ) -> None:
     """Estimate from an image pair how the right camera stands to the left one.
 
@@ -44,7 +47,7 @@ def pose(
     from rectbench.matching.images import read_images
 
     images = read_images(left, right)
-    calibrated = _calibrated(rig, images, max_angle_deg, unit)
+    calibrated = _calibrated(rig, images, max_angle_deg, unit, cameras)
     estimate = api.estimate_pose(images, calibrated, detector=detector, seed=seed)
     terminal.show_pose(estimate, calibrated)
     if out is not None:
@@ -64,6 +67,7 @@ def reconstruct(
     seed: MethodSeed = 0,
     max_angle_deg: MaxAngle = None,
     unit: Unit = None,
+    cameras: Cameras = None,
     matcher: Annotated[
         str, typer.Option(help="The dense matcher: sgbm, sgbm-5way, sgbm-8way or bm.")
     ] = "sgbm",
@@ -84,16 +88,19 @@ def reconstruct(
 
     matcher_named(matcher)  # a wrong name is told before the work begins
     images = read_images(left, right)
-    calibrated = _calibrated(rig, images, max_angle_deg, unit)
+    calibrated = _calibrated(rig, images, max_angle_deg, unit, cameras)
     rect = api.rectify(calibrated, method, images=images, seed=seed, **read_method_options(option))
     found = reconstruct(rect, *images, matcher, pixels=pixels, nearest_baselines=nearest_baselines)
     for file in write_reconstruction(found, out):
         print(file)
 
 
-def _calibrated(rig: list[str], images: Images, max_angle_deg: float | None, unit: str | None) -> Rig:
+def _calibrated(
+    rig: list[str], images: Images, max_angle_deg: float | None, unit: str | None, cameras: list[str] | None
+) -> Rig:
     """The rig of calibration files, its lenses held to their image circle."""
-    from rectbench.rigs import load_rig
+    from rectbench.rigs import load_rig_of_images
 
-    calibrated = load_rig(rig, size=images.left.shape[1::-1], unit=unit)
+    size = images.left.shape[1::-1]
+    calibrated = load_rig_of_images(rig, size, unit=unit, cameras=split_names(cameras))
     return calibrated if max_angle_deg is None else calibrated.within(max_angle_deg)

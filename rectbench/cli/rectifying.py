@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 
 import typer
 
-from rectbench.cli.app import INCOMPLETE, MaxAngle, MethodOptions, MethodSeed, Unit, split_names
+from rectbench.cli.app import INCOMPLETE, Cameras, MaxAngle, MethodOptions, MethodSeed, Unit, split_names
 from rectbench.cli.number_texts import image_size, numbers_in, two_numbers
 from rectbench.errors import InvalidInput
 
@@ -41,6 +41,7 @@ def rectify(
     seed: MethodSeed = 0,
     max_angle_deg: MaxAngle = None,
     unit: Unit = None,
+    cameras: Cameras = None,
     crop: Annotated[
         str | None,
         typer.Option(
@@ -109,6 +110,7 @@ def rectify(
         seed=seed,
         max_angle_deg=max_angle_deg,
         unit=unit,
+        cameras=split_names(cameras),
     )
     terminal.show_rectified(made)
     if made.left_out:

@@ -7,7 +7,16 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from rectbench.cli.app import MaxAngle, Method, MethodOptions, MethodSeed, RigFiles, Unit, split_names
+from rectbench.cli.app import (
+    Cameras,
+    MaxAngle,
+    Method,
+    MethodOptions,
+    MethodSeed,
+    RigFiles,
+    Unit,
+    split_names,
+)
 from rectbench.errors import InvalidInput
 
 POSE_SIZES = {"rotation_deg", "direction_deg"}
@@ -56,6 +65,7 @@ def uncertainty(
     seed: MethodSeed = 0,
     max_angle_deg: MaxAngle = None,
     unit: Unit = None,
+    cameras: Cameras = None,
 ) -> None:
     """Tell how far the calibration's uncertainty moves rows and depth: a picture, numbers and arrays.
 
@@ -72,7 +82,8 @@ def uncertainty(
         raise InvalidInput(f"one image was given, {left}; expected LEFT and RIGHT, or none")
     depths = _distances(depth_m)
     images = None if left is None or right is None else read_images(left, right)
-    believed = load_rig(rig, size=None if images is None else images.left.shape[1::-1], unit=unit)
+    size = None if images is None else images.left.shape[1::-1]
+    believed = load_rig(rig, size=size, unit=unit, cameras=split_names(cameras))
     if max_angle_deg is not None:
         believed = believed.within(max_angle_deg)
     sizes = {
@@ -83,7 +94,7 @@ def uncertainty(
         "centre_px": centre_px,
     }
     stated = {name: sigma for name, sigma in sizes.items() if sigma is not None}
-    believed, how_sure = _how_sure(believed, images, covariance or [], stated)
+    believed, how_sure = _how_sure(believed, images, covariance or [], stated, seed)
     rect = api.rectify(believed, method, images=images, seed=seed, **read_method_options(option))
     grid = map_pixels(believed.left)
     found = metrics.uncertainty(
@@ -96,7 +107,7 @@ def uncertainty(
 
 
 def _how_sure(
-    rig: Rig, images: Images | None, files: list[str], stated: dict[str, Any]
+    rig: Rig, images: Images | None, files: list[str], stated: dict[str, Any], seed: int
 ) -> tuple[Rig, RigCovariance]:
     """The believed rig, whose pose images tell where nothing is said of it, and its covariance."""
     from rectbench import api
@@ -104,7 +115,7 @@ def _how_sure(
 
     parts = []
     if images is not None and not files and not POSE_SIZES & stated.keys():
-        estimate = api.estimate_pose(images, rig)
+        estimate = api.estimate_pose(images, rig, seed=seed)
         if estimate.note:
             raise InvalidInput(f"{estimate.note}; expected images of the calibrated rig")
         rig = estimate.rig(rig)

@@ -86,6 +86,8 @@ def _tag_matches(left: Grey, right: Grey) -> BoardMatches | None:
             continue
         corners = [np.stack([tag[one] for one in common]).reshape(-1, 2) for tag in (seen, others)]
         found = np.isfinite(corners).all(axis=(0, 2))
+        if found.sum() < 4 * LEAST_TAGS:
+            continue
         matches = _agreeing(Matches(corners[0][found], corners[1][found]))
         if best is None or len(matches.left) > len(best.matches.left):
             best = BoardMatches(matches, f"{family}, {len(common)} tags")

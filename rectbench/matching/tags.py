@@ -145,7 +145,8 @@ def _bends(image: Grey, sides: _Sides) -> FloatArray:
     across = reach[..., None] * np.linspace(-1, 1, STEPS)
     places = sides.starts[..., None, :] + ALONG[:, None] * sides.steps[..., None, :]
     pixels = places[..., None, :] + across[..., None, :, None] * sides.outward[..., None, None, :]
-    flat = pixels.astype(np.float32).reshape(-1, STEPS, 2)
+    # A row a side: `cv2.remap` makes no image of more than 32766 rows.
+    flat = pixels.astype(np.float32).reshape(4 * len(pixels), -1, 2)
     levels = cv2.remap(image, flat, None, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
     # What gets darker outward is another edge. Squared, the steepest place counts most.
     slopes = np.gradient(levels.reshape(pixels.shape[:-1]).astype(np.float64), axis=-1)

@@ -2,7 +2,14 @@
 
 from rectbench.rigs.covariance import RigCovariance
 from rectbench.rigs.covariance_files import load_covariance
-from rectbench.rigs.loading import calibration_formats, is_calibration, load_rig, rig_names
+from rectbench.rigs.loading import (
+    calibration_formats,
+    holds_many,
+    is_calibration,
+    load_rig,
+    load_rig_of_images,
+    rig_names,
+)
 from rectbench.rigs.motions import MOTIONS, Motion
 from rectbench.rigs.poses import POSES, PoseNoise, perturb
 from rectbench.rigs.rig import Rig
@@ -16,9 +23,11 @@ __all__ = [
     "Rig",
     "RigCovariance",
     "calibration_formats",
+    "holds_many",
     "is_calibration",
     "load_covariance",
     "load_rig",
+    "load_rig_of_images",
     "perturb",
     "rig_names",
     "save_rig",

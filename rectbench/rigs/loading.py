@@ -129,6 +129,25 @@ def load_rig(
     return _with_order_told(_read(paths, given))
 
 
+def load_rig_of_images(
+    source: RigSource | Sequence[RigSource],
+    size: tuple[int, int],
+    unit: str | None = None,
+    cameras: Sequence[str] | None = None,
+) -> Rig:
+    """`load_rig`, with the images' size for files that leave it out, and for these alone.
+
+    The two cameras of other files may differ in size; whether an image fits is looked at image by image.
+    """
+    try:
+        return load_rig(source, unit=unit, cameras=cameras)
+    except InvalidInput as reason:
+        try:
+            return load_rig(source, size=size, unit=unit, cameras=cameras)
+        except InvalidInput as error:
+            raise (error if "`size=`" in str(reason) else reason) from None
+
+
 def rig_names() -> tuple[str, ...]:
     """The names of the rigs that ship with rectbench, sorted."""
     return tuple(sorted(_built_in_files()))
@@ -148,6 +167,15 @@ def is_calibration(path: RigSource) -> bool:
     """Whether a file holds a calibration, or a part of one, by its content; False for what cannot be read."""
     try:
         return _is_known(Source.read(path))
+    except InvalidInput:
+        return False
+
+
+def holds_many(path: RigSource) -> bool:
+    """Whether a file is of a format that may hold more than two cameras, which `cameras=` chooses from."""
+    try:
+        source = Source.read(path)
+        return any(format.has_many and format.recognises(source) for format in RIG_FORMATS)
     except InvalidInput:
         return False
 

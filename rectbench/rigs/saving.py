@@ -91,6 +91,9 @@ def _make_folder(folder: Path) -> None:
 
 def replace_files(texts: Mapping[Path, str]) -> None:
     """Write text files, all of them or none; what was there before stays until all are written."""
+    for path in texts:
+        if path.is_dir() or not path.name:
+            raise InvalidInput(f"{path}: is a folder; expected the path of a file")
     temporaries = {path: path.with_name(f".{path.name}.{os.getpid()}.tmp") for path in texts}
     try:
         for path, text in texts.items():

@@ -7,6 +7,7 @@ are the user's choice. Both images get the same frame, so that rows and disparit
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Literal, NamedTuple
 
@@ -25,6 +26,7 @@ COVERAGE_PIXELS = 40_000
 """Source pixels an image by which coverage is counted."""
 LARGEST_PIXELS = 200e6
 """A larger rectified image is refused: its lookup tables alone would take gigabytes."""
+VALID_INSET_PX = 0.501
 FORWARD = np.array([0.0, 0.0, 1.0])
 
 
@@ -62,8 +64,8 @@ class Framing:
 
     And these say how large it is:
 
-    size : (width, height) in pixels. What is shown is fitted into it, in the middle; with `focal_px`
-        beside it, as much is shown as then fits.
+    size : (width, height) in pixels. What is shown is fitted into it, in the middle; the valid crop fills
+        it. With `focal_px` beside it, as much is shown as then fits.
     focal_px : pixels per radian where the rectified frame's own axis is, the focal length of a
         perspective image; or "source", that of the source images at their centres.
     pixels : a budget: an image of more pixels is made smaller.
@@ -93,9 +95,14 @@ class Framing:
             raise InvalidInput(f"size is {self.size!r}; expected whole pixels")
         if self.focal_px != "source":
             _check_numbers("focal_px", self.focal_px, 1, "a number of pixels above 0, or source", 0)
-        _check_numbers("pixels", self.pixels, 1, "a number of pixels from 1 on", 0)
+        _check_numbers("pixels", self.pixels, 1, "a number of pixels above 1", 1)
         if self.coverage is not None and not (_is_number(self.coverage) and 0 < self.coverage <= 1):
             raise InvalidInput(f"coverage is {self.coverage!r}; expected a share above 0, at most 1")
+
+    @property
+    def is_resized(self) -> bool:
+        """Whether it says how large the image is."""
+        return (self.size, self.focal_px, self.pixels) != (None, None, None)
 
     @property
     def is_own(self) -> bool:
@@ -115,8 +122,12 @@ def framed(rect: Rectification, framing: Framing) -> Rectification:
     window = _window(rect, framing)
     if not (np.isfinite(window).all() and (window.extent > 0).all()):
         raise Unsupported("nothing is left in that frame; expected a larger crop, fov_deg or coverage")
+    if framing.crop == "valid" and framing.is_resized:
+        # Samples beyond the centres of the outermost valid pixels would not be valid themselves.
+        window = Window(*(np.array(window) + VALID_INSET_PX * np.array([1, 1, -1, -1])))
     scale = _scale(rect, framing, window)
-    size = _checked_size(framing.size or tuple(scale * window.extent))
+    wanted = framing.size or tuple(scale * window.extent)
+    size = _checked_size(wanted, math.floor if framing.is_resized else round)
     # Whole pixels: the window gives way by the fraction of one, its middle stays.
     corner, extent = window.centre - np.array(size) / (2 * scale), np.array(size) / scale
     return rect.windowed((corner[0], corner[1]), (extent[0], extent[1]), size)
@@ -154,7 +165,9 @@ def _scale(rect: Rectification, framing: Framing, window: Window) -> float:
         wanted = centre_resolution_px(rect.rig) if framing.focal_px == "source" else float(framing.focal_px)
         scale = wanted / focal_px(rect)
     elif framing.size is not None:
-        scale = float((np.array(framing.size) / window.extent).min())
+        scales = np.array(framing.size) / window.extent
+        # What is to be valid throughout fills the image; all else fits into it.
+        scale = float(scales.max() if framing.crop == "valid" else scales.min())
     else:
         scale = 1.0
     if framing.pixels is not None:
@@ -241,9 +254,9 @@ def _covering_window(rect: Rectification, share: float) -> Window:
     return window(least if least > 1e-9 else 0.0)
 
 
-def _checked_size(size: tuple[float, ...]) -> tuple[int, int]:
+def _checked_size(size: tuple[float, ...], whole: Callable[[float], int]) -> tuple[int, int]:
     sides = [float(side) for side in size]
-    width, height = (max(1.0, round(side)) if np.isfinite(side) else math.inf for side in sides)
+    width, height = (max(1.0, whole(side + 1e-9)) if np.isfinite(side) else math.inf for side in sides)
     if max(width, height) > LARGEST_SIDE_PX or width * height > LARGEST_PIXELS:
         raise InvalidInput(
             f"the rectified image would be {width:.0f}x{height:.0f} px; expected at most {LARGEST_SIDE_PX} a "

@@ -35,6 +35,11 @@ def largest_rectangle(valid: NDArray[np.bool_]) -> Box:
     height, width = (side // cell * cell for side in valid.shape)
     blocks = valid[:height, :width].reshape(height // cell, cell, width // cell, cell)
     best = Box(*(cell * edge for edge in _largest(blocks.min(axis=(1, 3)))))
+    if not best.area and cell > 1 and valid.any():  # what there is is narrower than a cell
+        rows, columns = (np.flatnonzero(valid.any(axis=axis)) for axis in (1, 0))
+        top, left = int(rows[0]), int(columns[0])
+        inner = _largest(valid[top : rows[-1] + 1, left : columns[-1] + 1])
+        return Box(inner.left + left, inner.top + top, inner.right + left, inner.bottom + top)
     return _grown(best, valid) if best.area else best
 
 

@@ -53,6 +53,8 @@ def _intrinsics(target: object) -> FloatArray:
     """K [3, 3] of a target that is an image with square pixels, as the field means it."""
     if not isinstance(target, Perspective):
         raise Unsupported(f"the rectified image is no perspective one but {type(target).__name__}")
+    if not target.matrix[2, 2] > 0:
+        raise Unsupported("the rectified image looks away from the rectified frame's axis")
     K = target.matrix / target.matrix[2, 2]
     focal = K[0, 0]
     square = np.array([[focal, 0, K[0, 2]], [0, focal, K[1, 2]], [0, 0, 1]])

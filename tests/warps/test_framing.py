@@ -187,3 +187,24 @@ def test_in_a_large_mask_the_rectangle_ends_where_valid_pixels_end() -> None:
     mask = np.zeros((1501, 1203), dtype=bool)
     mask[37:1401, 111:1177] = True
     assert largest_rectangle(mask) == (111, 37, 1177, 1401)
+
+
+@pytest.mark.parametrize("size", [{"focal_px": 400.0}, {"size": (800, 300)}, {"pixels": 30_001}])
+@pytest.mark.parametrize("method", ["abraham", "local-homography", "conventional"])
+def test_a_valid_crop_stays_valid_at_another_size(method: str, size: dict[str, object]) -> None:
+    rect = framed(rectified(method), Framing(crop="valid", **size))  # type: ignore[arg-type]
+    assert rect.valid("left").all()
+    assert rect.valid("right").all()
+    assert size.get("size", rect.size) == rect.size
+
+
+@given(st.floats(2, 1e6))
+def test_a_budget_is_never_overdrawn(pixels: float) -> None:
+    width, height = framed(rectified("abraham"), Framing(pixels=pixels)).size
+    assert width * height <= pixels * (1 + 1e-6) or min(width, height) == 1
+
+
+def test_what_is_narrower_than_a_cell_is_found_all_the_same() -> None:
+    mask = np.zeros((2000, 2000), dtype=bool)
+    mask[801:803, 100:1900] = True
+    assert largest_rectangle(mask) == (100, 801, 1900, 803)
