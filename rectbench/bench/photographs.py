@@ -31,6 +31,7 @@ NO_PHOTOGRAPHS = frozenset(
 )
 """Words in the names of what data sets have beside photographs."""
 MASK = "mask"
+UNREADABLE = "not an image that OpenCV can read"
 
 
 @dataclass(frozen=True)
@@ -145,7 +146,7 @@ def _images(files: Iterable[Path]) -> tuple[list[Path], list[Path], list[LeftOut
             continue
         words = set(words_in(file.stem))
         if not cv2.haveImageReader(str(file)):
-            left_out.append(LeftOut(file, "not an image that OpenCV can read"))
+            left_out.append(LeftOut(file, UNREADABLE))
         elif MASK in words:
             masks.append(file)
         elif kind := words & NO_PHOTOGRAPHS:

@@ -187,25 +187,19 @@ def rectify_images(
 
     measured = {round(place) for place in np.linspace(0, len(pairs) - 1, wanted.measured_pairs)}
     results: list[PairResult] = []
-
-    def rectified(place: int, pair: FilePair) -> PairResult:
-        both = first if pair is readable else _images_of(pair, rig)
-        stem = f"{{side}}/{pair.name}" if len(pairs) > 1 else "{side}"
-        files.extend(_written(_image_files(both, resamplers, stem), out))
-        if pair is readable:
-            return trusted.measured(pair, rect)
-        return (
-            _Trusted.of(both, rig, wanted.seed).measured(pair, rect)
-            if place in measured
-            else PairResult(pair)
-        )
-
     with (progress or Progress()).stage("pairs", len(pairs)) as advance:
         for place, pair in enumerate(pairs):
             try:
-                results.append(rectified(place, pair))
+                both = first if pair is readable else _images_of(pair, rig)
             except InvalidInput as error:
                 results.append(PairResult(pair, reason=str(error)))
+            else:
+                stem = f"{{side}}/{pair.name}" if len(pairs) > 1 else "{side}"
+                files += _written(_image_files(both, resamplers, stem), out)
+                known = trusted if pair is readable else _Trusted()
+                if place in measured and pair is not readable:
+                    known = _Trusted.of(both, rig, wanted.seed)
+                results.append(known.measured(pair, rect))
             advance()
     made = RectifiedImages(
         method, rect, costs, own_costs, choice, tuple(results), images.left_out, tuple(files)
@@ -227,7 +221,7 @@ class _Trusted:
         board, note = (found.matches, found.kind) if found else (None, "")
         try:
             features = consistent_matches(rig.left, rig.right, images, seed=seed)
-        except PoseNotFound as reason:
+        except (PoseNotFound, InvalidInput) as reason:
             return _Trusted(None, board, note or str(reason))
         return _Trusted(features, board, note)
 

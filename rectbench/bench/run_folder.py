@@ -18,6 +18,7 @@ import pandas as pd
 from rectbench import llvm
 from rectbench.bench.keys import PACKAGE, canonical_json, versions
 from rectbench.bench.outcomes import Outcome
+from rectbench.bench.photographs import UNREADABLE
 from rectbench.bench.planning import Plan
 from rectbench.bench.tasks import IDENTITY
 from rectbench.errors import InvalidInput, Unavailable
@@ -121,6 +122,12 @@ def _photograph_facts(plan: Plan) -> dict[str, Any]:
             "left_out": [{"path": below(out.path), "reason": out.reason} for out in found.left_out],
         },
     }
+
+
+def unreadable_images(folder: Path) -> list[str]:
+    """The images of a run of photographs that could not be read; none of other runs."""
+    photographs = read_facts(folder).get("photographs", {})
+    return [out["path"] for out in photographs.get("left_out", ()) if out["reason"] == UNREADABLE]
 
 
 def check_writable(folder: Path) -> None:

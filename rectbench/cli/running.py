@@ -52,6 +52,7 @@ def run(
     """
     from rectbench import api, terminal
     from rectbench.bench.configuring import overlaid, read_config, read_options
+    from rectbench.bench.run_folder import unreadable_images
     from rectbench.bench.running import Interrupted, run_folder
 
     settings, options = read_config(config) if config else ({}, {})
@@ -77,6 +78,9 @@ def run(
     terminal.show_summary(folder)
     if not (table["status"] == "ok").any():
         print(f"rectbench: nothing was measured; {_first_reason(table)}", file=sys.stderr)
+        raise typer.Exit(INCOMPLETE)
+    if unreadable := unreadable_images(folder):
+        print(f"rectbench: left out, since OpenCV cannot read it: {', '.join(unreadable)}", file=sys.stderr)
         raise typer.Exit(INCOMPLETE)
 
 

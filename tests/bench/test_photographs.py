@@ -265,3 +265,31 @@ def test_without_its_mask_the_t265s_rim_is_found(real_data: Path, tmp_path: Path
             shutil.copy(file, tmp_path)
     (one,) = find_photographs(tmp_path).calibrations
     assert one.max_angle_deg == pytest.approx(83, abs=2)
+
+
+@pytest.mark.parametrize(("left", "right", "focal"), [("cam0", "cam1", 100.0), ("cam2", "cam3", 200.0)])
+def test_of_many_cameras_those_are_taken_that_the_names_number(
+    tmp_path: Path, left: str, right: str, focal: float
+) -> None:
+    lens = rb.Camera("pinhole", (64, 48), {"fx": 100, "fy": 100, "cx": 31, "cy": 23})
+    rb.Rig(lens, lens, np.eye(3), np.array([-0.1, 0, 0])).save(tmp_path / "chain.yaml", format="kalibr")
+    chain = yaml.safe_load((tmp_path / "chain.yaml").read_text())
+    for name, model in (("cam2", "cam1"), ("cam3", "cam1")):
+        chain[name] = {**chain[model], "intrinsics": [200, 200, 31, 23]}
+    (tmp_path / "chain.yaml").write_text(yaml.safe_dump(chain))
+    for side in (left, right):
+        (tmp_path / side).mkdir()
+        cv2.imwrite(str(tmp_path / side / "7.png"), np.zeros((48, 64), np.uint8))
+    (pair,) = find_photographs(tmp_path).pairs
+    assert pair.calibration.rig().left.params["fx"] == focal
+    assert pair.calibration.rig().right.params["fx"] == focal
+
+
+def test_of_many_cameras_none_is_guessed(tmp_path: Path) -> None:
+    lens = rb.Camera("pinhole", (64, 48), {"fx": 100, "fy": 100, "cx": 31, "cy": 23})
+    rb.Rig(lens, lens, np.eye(3), np.array([-0.1, 0, 0])).save(tmp_path / "chain.yaml", format="kalibr")
+    for side in ("cam2", "cam3"):
+        (tmp_path / side).mkdir()
+        cv2.imwrite(str(tmp_path / side / "7.png"), np.zeros((48, 64), np.uint8))
+    with pytest.raises(rb.InvalidInput, match="which took it is not told"):
+        find_photographs(tmp_path)
