@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -17,7 +18,7 @@ from rectbench.cameras.arrays import FloatArray
 from rectbench.errors import InvalidInput
 from rectbench.matching.features import RATIO
 from rectbench.matching.pose import WORKING_PIXELS, PoseEstimate, pose_from_images
-from rectbench.rigs import Rig, load_rig, load_rig_of_images
+from rectbench.rigs import Rig, holds_many, load_rig, load_rig_of_images
 from rectbench.rigs.loading import RigSource
 from rectbench.warps import Framing, Images, Matches, Rectification, pose_problem
 
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from rectbench.bench.exporting import Exported
+    from rectbench.bench.pairing import FilePair
     from rectbench.bench.rectified_images import RectifiedImages
     from rectbench.bench.report_spec import Report
     from rectbench.rendering.images import StereoPair
@@ -138,15 +140,27 @@ def rectify_images(
     if rig is None:
         calibrated, matches = uncalibrated(images, seed=seed)
     else:
-        size = images.left.shape[1], images.left.shape[0]
-        calibrated = (
-            rig if isinstance(rig, Rig) else load_rig_of_images(rig, size, unit=unit, cameras=cameras)
-        )
-        matches = None
+        size, matches = (images.left.shape[1], images.left.shape[0]), None
+        if cameras is None:
+            _refuse_guessed_cameras(rig, pairing.pairs[0])
+        calibrated = rig if isinstance(rig, Rig) else load_rig_of_images(rig, size, unit, cameras)
     if max_angle_deg is not None:
         calibrated = calibrated.within(max_angle_deg)
     bars = progress_for(False if len(pairing.pairs) == 1 else progress)
     return rectify_images(pairing, calibrated, wanted, Path(out), matches=matches, progress=bars)
+
+
+def _refuse_guessed_cameras(rig: Rig | RigSource | Sequence[RigSource], pair: FilePair) -> None:
+    """Raise InvalidInput for images numbered as others than the first two cameras of a file of many."""
+    from rectbench.bench.pairing import camera_numbers
+
+    numbers = camera_numbers(pair)
+    files = [] if isinstance(rig, Rig) else [rig] if isinstance(rig, str | os.PathLike) else list(rig)
+    if numbers is not None and any(map(holds_many, files)):
+        raise InvalidInput(
+            f"{pair.left} is of camera {numbers[0]}, and {files[0]} may hold many; expected the names of two "
+            "(cameras, --cameras)"
+        )
 
 
 def estimate_pose(

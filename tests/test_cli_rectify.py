@@ -308,6 +308,20 @@ def test_photographs_are_never_written_over(shell: Shell) -> None:
         assert not Path("rectified.yaml").exists()
 
 
+def test_of_many_cameras_none_is_guessed(shell: Shell) -> None:
+    RIG.save("chain.yaml", format="kalibr")
+    for number, side in ((2, "l"), (3, "r")):
+        shutil.copytree(side, f"image_0{number}")
+        for file in Path(f"image_0{number}").iterdir():
+            file.rename(file.with_name(f"{file.stem[0]}.png"))
+    given = ("rectify", "image_02", "image_03", "--rig", "chain.yaml", "-o", "out", "--measure", 0)
+    code, _, err = shell(*given)
+    assert code == 2
+    assert "is of camera 2" in err
+    assert not Path("out").exists()
+    assert shell(*given, "--cameras", "cam0,cam1")[0] == 0
+
+
 def test_two_cameras_may_differ_in_size(shell: Shell) -> None:
     other = rb.Rig(RIG.left.scaled(0.5), RIG.right, RIG.R_right_left, RIG.t_right_left)
     other.save("mixed.yaml", format="kalibr")
