@@ -5,16 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from rectbench.matching import match_features
+from rectbench.matching.consistent import WORKING_PIXELS
 from rectbench.rendering.images import StereoPair
 from rectbench.rigs import Rig
 from rectbench.warps import Matches, centre_resolution_px
 
 FARTHEST_PX = 3.0
 """A match farther from its epipolar plane is a wrong match, not an imprecise one."""
-
-
-WORKING_PIXELS = 2_100_000
-"""Features of a larger image are found at this size: of a film camera's image they would take gigabytes."""
 
 
 def scored_features(images: StereoPair, rig: Rig) -> Matches:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import os
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
 from glob import glob, has_magic
 from pathlib import Path
 
+from rectbench.bench.found_calibrations import home_of
 from rectbench.bench.pairing import FilePair, Pairing, paired_folders
 from rectbench.bench.photographs import IMAGE_SUFFIXES
 from rectbench.errors import InvalidInput
@@ -24,7 +24,7 @@ def image_pairs(left: str, right: str) -> Pairing:
     lefts, rights = _files(left, "left"), _files(right, "right")
     if not (_is_many(left) or _is_many(right)):
         return Pairing((FilePair(lefts[0].stem, lefts[0], rights[0]),), ())
-    pairing = paired_folders(_folder_of(lefts), _folder_of(rights), lefts, rights)
+    pairing = paired_folders(home_of(lefts), home_of(rights), lefts, rights)
     if not pairing.pairs:
         first = pairing.left_out[0]
         raise InvalidInput(
@@ -50,11 +50,6 @@ def _files(place: str, side: str) -> list[Path]:
             f"{place}: holds no {side} image; expected a file, a folder of images or a pattern"
         )
     return sorted(files)
-
-
-def _folder_of(files: Sequence[Path]) -> Path:
-    """The folder that holds them all."""
-    return Path(os.path.commonpath([file.parent for file in files]))
 
 
 def _distinctly_named(pairs: Sequence[FilePair]) -> tuple[FilePair, ...]:
