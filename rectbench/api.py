@@ -11,25 +11,27 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rectbench.bench.pairs import build_world, placed, render_seed
-from rectbench.bench.plugins import is_path, registry
-from rectbench.bench.rectifying import checked_options, fit
-from rectbench.cameras.arrays import FloatArray
+from rectbench.calibrations import holds_many, load_rig, load_rig_of_images
+from rectbench.calibrations.reading import RigSource
 from rectbench.errors import InvalidInput
-from rectbench.matching.features import RATIO
-from rectbench.matching.pose import WORKING_PIXELS, PoseEstimate, pose_from_images
-from rectbench.rigs import Rig, holds_many, load_rig, load_rig_of_images
-from rectbench.rigs.loading import RigSource
-from rectbench.warps import Framing, Images, Matches, Rectification, pose_problem
+from rectbench.matching.features.matches import RATIO
+from rectbench.matching.pose.estimate import WORKING_PIXELS, PoseEstimate, pose_from_images
+from rectbench.pairs.pairs import build_world, placed, render_seed
+from rectbench.plugins.fitting import checked_options, fit
+from rectbench.plugins.loading import is_path, registry
+from rectbench.plugins.rectifier import pose_problem
+from rectbench.rigs import Rig
+from rectbench.types import FloatArray, Images, Matches
+from rectbench.warps import Framing, Rectification
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from rectbench.bench.exporting import Exported
-    from rectbench.bench.pairing import FilePair
-    from rectbench.bench.rectified_images import RectifiedImages
-    from rectbench.bench.report_spec import Report
-    from rectbench.rendering.images import StereoPair
+    from rectbench.applications.export.exporting import Exported
+    from rectbench.applications.rectified_images import RectifiedImages
+    from rectbench.experiments.spec import Report
+    from rectbench.images.stereo_pair import StereoPair
+    from rectbench.pairs.finding.pairing import FilePair
     from rectbench.rendering.truth import Truth
 
 SIDES = ("left", "right")
@@ -115,14 +117,14 @@ def rectify_images(
         cameras are meant, where the calibration does not tell.
     progress : a bar on stderr; where there are several pairs and a terminal by default.
 
-    Returns what was made; see `rectbench.bench.rectified_images.rectify_images` for the files, and for what
+    Returns what was made; see `rectbench.applications.rectified_images` for the files, and for what
     is raised.
     """
-    from rectbench.bench.image_pairs import image_pairs
-    from rectbench.bench.progress import progress_for
-    from rectbench.bench.rectified_images import Wanted, first_readable, rectify_images
-    from rectbench.bench.run_folder import check_writable
-    from rectbench.matching.uncalibrated import uncalibrated
+    from rectbench.applications.rectified_images import Wanted, first_readable, rectify_images
+    from rectbench.experiments.run_folder import check_writable
+    from rectbench.matching.pose.uncalibrated import uncalibrated
+    from rectbench.pairs.finding.image_pairs import image_pairs
+    from rectbench.progress import progress_for
 
     check_writable(Path(out))
     wanted = Wanted(
@@ -152,7 +154,7 @@ def rectify_images(
 
 def _refuse_guessed_cameras(rig: Rig | RigSource | Sequence[RigSource], pair: FilePair) -> None:
     """Raise InvalidInput for images numbered as others than the first two cameras of a file of many."""
-    from rectbench.bench.pairing import camera_numbers
+    from rectbench.pairs.finding.pairing import camera_numbers
 
     numbers = camera_numbers(pair)
     files = [] if isinstance(rig, Rig) else [rig] if isinstance(rig, str | os.PathLike) else list(rig)
@@ -269,12 +271,12 @@ def export_dataset(
 
     Written are images, depth, visibility and flow; the rectified pair with its masks and exact disparity;
     calibrations; `README.md`, which says what each file holds and how it is read, and `dataset.json`. See
-    `rectbench.bench.exporting`. Raises UnknownName, InvalidInput (for a folder with another dataset, too),
+    `rectbench.applications.export`. Raises UnknownName, InvalidInput (for a folder of another dataset, too),
     Unsupported where the method cannot serve the rig, Unavailable where this machine cannot render.
     """
-    from rectbench.bench.exporting import Export, export_dataset
-    from rectbench.bench.progress import progress_for
-    from rectbench.bench.run_folder import check_writable
+    from rectbench.applications.export.exporting import Export, export_dataset
+    from rectbench.experiments.run_folder import check_writable
+    from rectbench.progress import progress_for
 
     check_writable(Path(out))
     checked = [_checked_seed(seed) for seed in dict.fromkeys(seeds)]
@@ -311,10 +313,10 @@ def run(
 
     A report of photographs, such as "real", takes them from the folder `data`.
 
-    The arguments are those of `rectbench.bench.running.run`. Returns the rows of `results.parquet`.
+    The arguments are those of `experiments.execution.running.run`. Returns the rows of `results.parquet`.
     """
-    from rectbench.bench import running
-    from rectbench.bench.progress import progress_for
+    from rectbench.experiments.execution import running
+    from rectbench.progress import progress_for
     from rectbench.reporting import write_report
 
     table = running.run(

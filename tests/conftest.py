@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 from hypothesis import settings
@@ -29,3 +31,12 @@ def shell(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -
         return ended.value.code, captured.out, captured.err
 
     return call
+
+
+@pytest.fixture(scope="session")
+def real_data() -> Path:
+    """Real pairs and calibrations, which are no part of this repository."""
+    folder = Path(os.environ.get("RECTBENCH_DATA", Path(__file__).parents[1] / "../shared/data"))
+    if not folder.is_dir():
+        pytest.skip(f"no real data at {folder}; RECTBENCH_DATA names another place")
+    return folder

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import rectbench as rb
-from tests.bench.fakes import write_method, write_scene
+from tests.experiments.fakes import write_method, write_scene
 
 
 @pytest.fixture(scope="module")

@@ -14,9 +14,9 @@ from typing import Any
 
 from numpy.polynomial import Polynomial
 
-from rectbench.cameras.domain import FARTHEST, LEAST_SLOPE, first_root
-from rectbench.cameras.inversion import invert_in_disk
-from rectbench.cameras.monotone import edge_of_disk, monotone_radius
+from rectbench.formulas.domain import FARTHEST, LEAST_SLOPE, first_root
+from rectbench.formulas.inversion import invert_in_disk
+from rectbench.formulas.monotone import edge_of_disk, monotone_radius
 
 COEFFICIENTS = ("k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6", "s1", "s2", "s3", "s4")
 STEEPEST = 1e5

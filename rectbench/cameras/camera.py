@@ -14,12 +14,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 import rectbench.cameras.models  # noqa: F401  (registers the projection models)
-from rectbench.cameras.arrays import BoolArray, Constants, FloatArray
-from rectbench.cameras.domain import PIXEL_SLACK, RAY_SLACK
 from rectbench.cameras.lens import lens_named
 from rectbench.cameras.parameters import checked_parameters
 from rectbench.cameras.projection import Projection, as_points
 from rectbench.errors import InvalidInput
+from rectbench.formulas.domain import PIXEL_SLACK, RAY_SLACK
+from rectbench.types import BoolArray, Constants, FloatArray
 
 
 @dataclass(frozen=True, repr=False)

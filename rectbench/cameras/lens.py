@@ -7,9 +7,9 @@ from collections.abc import Mapping
 from types import SimpleNamespace
 from typing import Any, ClassVar
 
-from rectbench.cameras.domain import PIXEL_SLACK, RAY_SLACK
 from rectbench.cameras.parameters import POSITIVE, Interval
 from rectbench.errors import UnknownName
+from rectbench.formulas.domain import PIXEL_SLACK, RAY_SLACK
 
 FOCAL_PARAMETERS = ("fx", "fy", "cx", "cy")
 AXIS_SINE = 1e-12

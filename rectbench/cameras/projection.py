@@ -8,17 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rectbench.cameras.arrays import (
-    BoolArray,
-    Constants,
-    FloatArray,
-    JetNamespace,
-    as_jets,
-    constant,
-    evaluate_points,
-    variables,
-)
 from rectbench.errors import InvalidInput
+from rectbench.formulas.arrays import JetNamespace, as_jets, constant, evaluate_points, variables
+from rectbench.types import BoolArray, Constants, FloatArray
 
 __all__ = ["BoolArray", "Projection", "as_points", "projected_partials"]
 
@@ -37,7 +29,7 @@ def as_points(array: ArrayLike, width: int, name: str) -> FloatArray:
 class Projection(ABC):
     """A mapping between rays (x right, y down, z forward) and pixels, invertible on its domain.
 
-    A subclass states its two formulas against a namespace `xp` (see `rectbench.cameras.arrays`) and
+    A subclass states its two formulas against a namespace `xp` (see `rectbench.formulas.arrays`) and
     the constants in them; everything else, derivatives included, follows from those.
     """
 

@@ -13,12 +13,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rectbench.cameras.arrays import Constants, FloatArray, Jet, JetNamespace, constant, evaluate_points
 from rectbench.cameras.camera import Camera
 from rectbench.cameras.lens import lens_named
 from rectbench.cameras.parameters import Parameter
 from rectbench.cameras.projection import as_points
 from rectbench.errors import UnknownName
+from rectbench.formulas.arrays import Jet, JetNamespace, constant, evaluate_points
+from rectbench.types import Constants, FloatArray
 
 DERIVED_STEP = 1e-6
 """Step, relative to a parameter or to 1, of the central differences of what a model derives from it."""

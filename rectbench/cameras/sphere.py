@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from rectbench.cameras.domain import LEAST_SLOPE, PIXEL_SLACK, RAY_SLACK
+from rectbench.formulas.domain import LEAST_SLOPE, PIXEL_SLACK, RAY_SLACK
 
 
 def edge(alpha: float) -> dict[str, float]:

@@ -36,7 +36,7 @@ def convert(
     unit: Unit = None,
 ) -> None:
     """Write a calibration in another format, exactly, or tell why that format cannot hold it."""
-    from rectbench.rigs import load_rig
+    from rectbench.calibrations import load_rig
 
     pair = split_names(None if cameras is None else [cameras])
     rig = load_rig(calibration, image_size(size), unit, pair)

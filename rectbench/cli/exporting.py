@@ -31,7 +31,7 @@ def export(
     where it was; one with more seeds adds pairs.
     """
     from rectbench import api
-    from rectbench.bench.configuring import read_method_options
+    from rectbench.cli.configuring import read_method_options
 
     made = api.export_dataset(
         scene,

@@ -15,9 +15,9 @@ def check(
     ],
 ) -> None:
     """Run the conformance suite over a method; exit code 1 where a check fails."""
-    from rectbench import terminal
-    from rectbench.bench.conformance import check_method
-    from rectbench.bench.plugins import registry
+    from rectbench.applications.conformance import check_method
+    from rectbench.cli import printing as terminal
+    from rectbench.plugins.loading import registry
 
     method = registry("methods").get(plugin)
     failed = terminal.show_checks(method.name, check_method(method))
@@ -26,8 +26,8 @@ def check(
 
 def doctor() -> None:
     """Tell what is there and what is missing; exit code 2 where rectbench cannot run."""
-    from rectbench import terminal
-    from rectbench.bench.doctor import examine
+    from rectbench.applications.doctor import examine
+    from rectbench.cli import printing as terminal
 
     raise typer.Exit(0 if terminal.show_examination(examine()) else WRONG_USAGE)
 
@@ -41,7 +41,7 @@ def gc(
     ] = None,
 ) -> None:
     """Remove rendered pairs and finished cells from the store; without options, tell its size."""
-    from rectbench.bench.store import Store
+    from rectbench.store.store import Store
 
     store = Store.default()
     if older_than is not None or larger_than is not None:

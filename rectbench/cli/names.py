@@ -16,7 +16,7 @@ def list_(
     verbose: Annotated[bool, typer.Option("--verbose", "-v", help="With options and references.")] = False,
 ) -> None:
     """List methods, scenes, rigs, motions, poses and reports, and the plugins that cannot be loaded."""
-    from rectbench import terminal
+    from rectbench.cli import printing as terminal
 
     if kind is not None and kind not in KINDS:
         raise UnknownName("kind", kind, KINDS)

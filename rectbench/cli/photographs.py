@@ -22,7 +22,7 @@ from rectbench.cli.app import (
 
 if TYPE_CHECKING:
     from rectbench.rigs import Rig
-    from rectbench.warps import Images
+    from rectbench.types import Images
 
 
 def pose(
@@ -43,8 +43,9 @@ def pose(
     The calibration gives the two lenses and the length of the baseline; its own pose is compared with
     the estimate.
     """
-    from rectbench import api, terminal
-    from rectbench.matching.images import read_images
+    from rectbench import api
+    from rectbench.cli import printing as terminal
+    from rectbench.images.reading import read_images
 
     images = read_images(left, right)
     calibrated = _calibrated(rig, images, max_angle_deg, unit, cameras)
@@ -80,11 +81,11 @@ def reconstruct(
 ) -> None:
     """Reconstruct an image pair in 3-D: a coloured point cloud, depth, disparity and a picture."""
     from rectbench import api
-    from rectbench.bench.configuring import read_method_options
+    from rectbench.cli.configuring import read_method_options
+    from rectbench.images.reading import read_images
     from rectbench.matching import reconstruct
-    from rectbench.matching.images import read_images
-    from rectbench.matching.matchers import matcher_named
-    from rectbench.reporting.reconstructed import write_reconstruction
+    from rectbench.matching.dense.matchers import matcher_named
+    from rectbench.reporting.pictures.reconstructed import write_reconstruction
 
     matcher_named(matcher)  # a wrong name is told before the work begins
     images = read_images(left, right)
@@ -99,7 +100,7 @@ def _calibrated(
     rig: list[str], images: Images, max_angle_deg: float | None, unit: str | None, cameras: list[str] | None
 ) -> Rig:
     """The rig of calibration files, its lenses held to their image circle."""
-    from rectbench.rigs import load_rig_of_images
+    from rectbench.calibrations import load_rig_of_images
 
     size = images.left.shape[1::-1]
     calibrated = load_rig_of_images(rig, size, unit=unit, cameras=split_names(cameras))

@@ -85,8 +85,9 @@ def rectify(
     LEFT and RIGHT are two images, two folders, or two patterns such as 'left/*.png' in quotation marks.
     Exit code 3 where some of several pairs had to be left out.
     """
-    from rectbench import api, terminal
-    from rectbench.bench.configuring import read_method_options
+    from rectbench import api
+    from rectbench.cli import printing as terminal
+    from rectbench.cli.configuring import read_method_options
     from rectbench.warps import Framing
 
     made = api.rectify_images(

@@ -50,10 +50,11 @@ def run(
     Names are separated by commas, and may be paths of files. A run that was cut off goes on where it
     was; what is in the store is not done again.
     """
-    from rectbench import api, terminal
-    from rectbench.bench.configuring import overlaid, read_config, read_options
-    from rectbench.bench.run_folder import unreadable_images
-    from rectbench.bench.running import Interrupted, run_folder
+    from rectbench import api
+    from rectbench.cli import printing as terminal
+    from rectbench.cli.configuring import overlaid, read_config, read_options
+    from rectbench.experiments.execution.running import Interrupted, run_folder
+    from rectbench.experiments.run_folder import unreadable_images
 
     settings, options = read_config(config) if config else ({}, {})
     said = {
@@ -86,8 +87,8 @@ def run(
 
 def report(folder: RunFolder) -> None:
     """Write the tables, figures and page of a run again."""
-    from rectbench import terminal
-    from rectbench.bench.progress import progress_for
+    from rectbench.cli import printing as terminal
+    from rectbench.progress import progress_for
     from rectbench.reporting import write_report
 
     write_report(folder, progress=progress_for(None))
@@ -107,8 +108,8 @@ def gate(
 
     Exit code 0 where it is as good, 1 where it got worse, 3 where it is incomplete or measured nothing.
     """
-    from rectbench import terminal
-    from rectbench.bench import gating
+    from rectbench.cli import printing as terminal
+    from rectbench.experiments import gating
 
     path = accepted or gating.accepted_path(folder)
     if accept:
@@ -125,8 +126,8 @@ def compare(
     metrics: Annotated[list[str] | None, typer.Option(metavar="NAMES", help="Only these columns.")] = None,
 ) -> None:
     """Compare two runs cell by cell: the median change B - A of every metric, with its 95 % interval."""
-    from rectbench import terminal
-    from rectbench.bench import comparing
+    from rectbench.cli import printing as terminal
+    from rectbench.experiments import comparing
 
     comparison = comparing.compare(a, b)
     if comparison.table.empty:

@@ -23,7 +23,7 @@ POSE_SIZES = {"rotation_deg", "direction_deg"}
 
 if TYPE_CHECKING:
     from rectbench.rigs import Rig, RigCovariance
-    from rectbench.warps import Images
+    from rectbench.types import Images
 
 
 def uncertainty(
@@ -72,11 +72,12 @@ def uncertainty(
     With two images and nothing said about the pose, it is estimated from them with its own covariance, to
     which what is said about lenses and baseline adds.
     """
-    from rectbench import api, metrics, terminal
-    from rectbench.bench.configuring import read_method_options
-    from rectbench.matching.images import read_images
-    from rectbench.reporting.uncertainty_maps import map_pixels, write_uncertainty
-    from rectbench.rigs import load_rig
+    from rectbench import api, metrics
+    from rectbench.calibrations import load_rig
+    from rectbench.cli import printing as terminal
+    from rectbench.cli.configuring import read_method_options
+    from rectbench.images.reading import read_images
+    from rectbench.reporting.pictures.uncertainty_maps import map_pixels, write_uncertainty
 
     if (left is None) != (right is None):
         raise InvalidInput(f"one image was given, {left}; expected LEFT and RIGHT, or none")
@@ -111,7 +112,8 @@ def _how_sure(
 ) -> tuple[Rig, RigCovariance]:
     """The believed rig, whose pose images tell where nothing is said of it, and its covariance."""
     from rectbench import api
-    from rectbench.rigs import RigCovariance, load_covariance
+    from rectbench.calibrations import load_covariance
+    from rectbench.rigs import RigCovariance
 
     parts = []
     if images is not None and not files and not POSE_SIZES & stated.keys():

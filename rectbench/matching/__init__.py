@@ -1,13 +1,13 @@
 """Matches between images, and the geometry they determine."""
 
-from rectbench.matching.boards import BoardMatches, board_matches
-from rectbench.matching.consistent import agreeing_matches, consistent_matches
-from rectbench.matching.dense import Disparity, dense_disparity
-from rectbench.matching.features import match_features, sift_matches
-from rectbench.matching.fundamental import fundamental_matrix, sampson_residuals
-from rectbench.matching.matchers import MATCHERS
-from rectbench.matching.pose import PoseEstimate, pose_from_images, relative_pose
-from rectbench.matching.reconstruction import Reconstruction, reconstruct
+from rectbench.matching.boards.corners import BoardMatches, board_matches
+from rectbench.matching.dense.disparity import Disparity, dense_disparity
+from rectbench.matching.dense.matchers import MATCHERS
+from rectbench.matching.dense.reconstruction import Reconstruction, reconstruct
+from rectbench.matching.features.matches import match_features, sift_matches
+from rectbench.matching.pose.consistent import agreeing_matches, consistent_matches
+from rectbench.matching.pose.estimate import PoseEstimate, pose_from_images, relative_pose
+from rectbench.matching.pose.fundamental import fundamental_matrix, sampson_residuals
 
 __all__ = [
     "MATCHERS",

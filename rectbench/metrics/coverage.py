@@ -5,13 +5,14 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rectbench.cameras import Camera
-from rectbench.cameras.arrays import FloatArray, evaluate_points
 from rectbench.cameras.projection import projected_partials
+from rectbench.formulas.arrays import evaluate_points
 from rectbench.rigs import Rig
+from rectbench.types import FloatArray
 from rectbench.warps import Rectification, Warp
+from rectbench.warps.rectification import in_frame
 from rectbench.warps.warp import rotated
 
 DENSE_PIXELS = 150_000
@@ -72,9 +73,3 @@ def solid_angle(du: Any, dv: Any, xp: Any) -> Any:
     """Solid angle of a pixel, steradians, from the projection's gradients du/d(ray) and dv/d(ray)."""
     uu, uv, vv = (sum(p * q for p, q in zip(a, b, strict=True)) for a, b in ((du, du), (du, dv), (dv, dv)))
     return 1.0 / xp.sqrt(uu * vv - uv * uv)
-
-
-def in_frame(px_rect: FloatArray, size: tuple[int, int]) -> NDArray[np.bool_]:
-    """Mask [...] of the rectified pixels [..., 2] that lie on an image of `size`; NaN does not."""
-    inside: NDArray[np.bool_] = np.all((px_rect >= -0.5) & (px_rect <= np.array(size) - 0.5), axis=-1)
-    return inside

@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import least_squares
 
-from rectbench.cameras.arrays import FloatArray
 from rectbench.errors import InvalidInput
 from rectbench.metrics.jacobians import Jacobians, entries, finite, losses, singular_values
 from rectbench.rigs import Rig
+from rectbench.types import FloatArray
 from rectbench.warps import Rectification
 
 Protocol = Literal["native", "rescaled", "stretched"]

@@ -13,10 +13,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rectbench.cameras.arrays import FloatArray
 from rectbench.errors import InvalidInput
 from rectbench.metrics.distortion import WEIGHTS
 from rectbench.metrics.jacobians import entries
+from rectbench.types import FloatArray
 from rectbench.warps import Cubic, Epipolar, Profile, Rectification, Warp, evaluation_pixels
 from rectbench.warps.targets import ANGLES
 

@@ -8,7 +8,7 @@ from rectbench.metrics.jacobians import Jacobians
 from rectbench.metrics.sampling import every_pixel
 from rectbench.rigs import Rig
 from rectbench.warps import Rectification, centre_resolution_px
-from rectbench.warps.framing import focal_px
+from rectbench.warps.view.framing import focal_px
 
 
 def frame_costs(rect: Rectification, rig: Rig) -> dict[str, float]:

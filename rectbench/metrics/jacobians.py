@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rectbench.cameras.arrays import FloatArray
-from rectbench.metrics.coverage import in_frame
+from rectbench.types import FloatArray
 from rectbench.warps import Rectification, evaluation_pixels
+from rectbench.warps.rectification import in_frame
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,10 +6,11 @@ import math
 
 import numpy as np
 
-from rectbench.cameras.arrays import FloatArray
-from rectbench.metrics.coverage import dense_pixels, in_frame
+from rectbench.metrics.coverage import dense_pixels
 from rectbench.rigs import Rig
+from rectbench.types import FloatArray
 from rectbench.warps import Rectification, Warp, rectifying_rotations
+from rectbench.warps.rectification import in_frame
 
 ORDER_PIXELS = 5_000
 

@@ -8,13 +8,14 @@ from typing import Any
 
 import numpy as np
 
-from rectbench.cameras.arrays import FloatArray, evaluate_points
 from rectbench.cameras.projection import projected_partials
 from rectbench.cameras.sensitivity import parameter_constants, parameter_partials
-from rectbench.metrics.coverage import in_frame
+from rectbench.formulas.arrays import evaluate_points
 from rectbench.rigs import Rig, RigCovariance
 from rectbench.rigs.covariance import POSE
+from rectbench.types import FloatArray
 from rectbench.warps import Rectification
+from rectbench.warps.rectification import in_frame
 from rectbench.warps.warp import Vector, ray_derivatives, rotated, rotated_back
 
 GROUPS = ("rotation", "translation", "left intrinsics", "right intrinsics")

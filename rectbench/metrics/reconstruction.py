@@ -6,11 +6,11 @@ import math
 
 import numpy as np
 
-from rectbench.cameras.arrays import BoolArray, FloatArray
 from rectbench.errors import InvalidInput
 from rectbench.matching import Reconstruction
 from rectbench.metrics.coverage import dense_pixels
 from rectbench.rendering.truth import Truth
+from rectbench.types import BoolArray, FloatArray
 
 BAD_PX = (1, 2, 4)
 COMPLETE_WITHIN = 0.05

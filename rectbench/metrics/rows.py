@@ -8,12 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rectbench.cameras.arrays import FloatArray
 from rectbench.cameras.projection import as_points
 from rectbench.errors import InvalidInput
-from rectbench.metrics.coverage import in_frame
 from rectbench.metrics.jacobians import finite
+from rectbench.types import FloatArray
 from rectbench.warps import Rectification
+from rectbench.warps.rectification import in_frame
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,9 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from rectbench.cameras.arrays import FloatArray, evaluate_points
+from rectbench.formulas.arrays import evaluate_points
 from rectbench.metrics.distortion import PROTOCOLS, WEIGHTS
 from rectbench.metrics.jacobians import Jacobians, losses, singular_values
+from rectbench.types import FloatArray
 from rectbench.warps import Rectification, Warp, evaluation_pixels
 
 UNIT_TOLERANCE = 1e-9

@@ -9,7 +9,8 @@ from rectbench.metrics.order import order
 from rectbench.metrics.rows import row_error
 from rectbench.metrics.sampling import every_pixel
 from rectbench.rigs import Rig
-from rectbench.warps import Matches, Rectification
+from rectbench.types import Matches
+from rectbench.warps import Rectification
 
 BOARD_ERRORS = ("mean", "median", "p95", "source_mean")
 """What is told of the row errors of a board's corners."""

@@ -22,7 +22,6 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rectbench.cameras.arrays import FloatArray
 from rectbench.cameras.projection import as_points
 from rectbench.errors import InvalidInput
 from rectbench.metrics.coverage import dense_pixels
@@ -30,6 +29,7 @@ from rectbench.metrics.jacobians import finite
 from rectbench.metrics.propagation import GROUPS, Propagation
 from rectbench.rigs import Rig
 from rectbench.rigs.covariance import RigCovariance
+from rectbench.types import FloatArray
 from rectbench.warps import Rectification
 
 MEAN_OF_ABSOLUTE = math.sqrt(2 / math.pi)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rectbench.cameras.arrays import FloatArray
 from rectbench.errors import InvalidResult
 from rectbench.rendering.world import Material, Mesh, World
+from rectbench.types import FloatArray
 
 POSE_TOLERANCE = 1e-4
 """Largest entry of RᵀR - 1 in a pose that still is rounding: Mitsuba keeps its own in float32."""

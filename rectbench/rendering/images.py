@@ -1,20 +1,14 @@
-"""Radiance to pictures, and the pair of pictures."""
+"""Radiance to pictures."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from rectbench.errors import InvalidInput
+from rectbench.images.stereo_pair import Image
 from rectbench.rendering.variant import drjit, mitsuba
-from rectbench.rigs.rig import Rig
-
-Image = NDArray[np.uint8]
 
 SAMPLES_AT_ONCE = 1 << 23
 """Samples in flight: the radiance of no more than these is kept, whatever the image's size."""
@@ -71,62 +65,3 @@ def srgb8(linear: NDArray[Any], exposure: float = 1.0) -> Image:
     y = np.where(x <= 0.0031308, 12.92 * x, 1.055 * x ** (1 / 2.4) - 0.055)
     image: Image = (y * 255.0 + 0.5).astype(np.uint8)
     return image
-
-
-@dataclass(frozen=True, eq=False)
-class StereoPair:
-    """The images of a rig: `left`, `right` uint8 sRGB [H, W, 3], each of its camera's size.
-
-    Raises InvalidInput for an array that is no such image.
-    """
-
-    left: Image
-    right: Image
-
-    def __post_init__(self) -> None:
-        for side in ("left", "right"):
-            image = np.asarray(getattr(self, side))
-            if image.dtype != np.uint8 or image.ndim != 3 or image.shape[2] != 3 or image.size == 0:
-                raise InvalidInput(f"{side} image is {image.dtype} {image.shape}; expected uint8 [H, W, 3]")
-            object.__setattr__(self, side, image)
-
-    def check(self, rig: Rig) -> None:
-        """Raise InvalidInput where an image's size is not its camera's."""
-        for side in ("left", "right"):
-            height, width = getattr(self, side).shape[:2]
-            camera = getattr(rig, side)
-            if (width, height) != camera.size:
-                raise InvalidInput(
-                    f"{side} image is {width}x{height}; expected {camera.width}x{camera.height}, "
-                    f"the size of rig {rig.name}'s camera"
-                )
-
-    def save(self, folder: str | Path) -> None:
-        """Write left.png and right.png into a folder, which is made where it does not exist."""
-        folder = Path(folder)
-        folder.mkdir(parents=True, exist_ok=True)
-        for side in ("left", "right"):
-            cv2.imwrite(str(folder / f"{side}.png"), cv2.cvtColor(getattr(self, side), cv2.COLOR_RGB2BGR))
-
-    @classmethod
-    def load(cls, folder: str | Path, rig: Rig | None = None) -> StereoPair:
-        """Read left.png and right.png of a folder; with a rig, their sizes are checked against it."""
-        return cls.read(Path(folder) / "left.png", Path(folder) / "right.png", rig)
-
-    @classmethod
-    def read(cls, left: str | Path, right: str | Path, rig: Rig | None = None) -> StereoPair:
-        """Read two image files; with a rig, their sizes are checked against it."""
-        pair = cls(_read(Path(left)), _read(Path(right)))
-        if rig is not None:
-            pair.check(rig)
-        return pair
-
-
-def _read(path: Path) -> Image:
-    if not path.is_file():
-        raise InvalidInput(f"{path}: no such image")
-    image = cv2.imread(str(path), cv2.IMREAD_COLOR)
-    if image is None:
-        raise InvalidInput(f"{path}: not an image that OpenCV can read")
-    colours: Image = np.asarray(cv2.cvtColor(image, cv2.COLOR_BGR2RGB), dtype=np.uint8)
-    return colours

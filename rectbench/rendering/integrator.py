@@ -13,10 +13,10 @@ from typing import Any
 
 import numpy as np
 
-from rectbench.cameras.arrays import FloatArray
 from rectbench.rendering.mitsuba_scene import LAMP_OFFSET
 from rectbench.rendering.variant import drjit, mitsuba
 from rectbench.rendering.world import World
+from rectbench.types import FloatArray
 
 SUN_RADIANCE = (2.4, 2.25, 2.0)
 

@@ -13,10 +13,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rectbench.cameras.arrays import FloatArray
 from rectbench.rendering.checks import check_material, check_world, checked_mesh, checked_placements
 from rectbench.rendering.variant import mitsuba
 from rectbench.rendering.world import Lamp, Material, Mesh, World
+from rectbench.types import FloatArray
 
 SUN_APERTURE_DEG = 0.53
 

@@ -8,9 +8,9 @@ from typing import Any, Literal, get_args, overload
 
 import numpy as np
 
-from rectbench.cameras.arrays import FloatArray
 from rectbench.errors import InvalidInput, UnknownName
-from rectbench.rendering.images import Image, StereoPair, radiance, srgb8
+from rectbench.images.stereo_pair import Image, StereoPair
+from rectbench.rendering.images import radiance, srgb8
 from rectbench.rendering.integrator import fast_integrator
 from rectbench.rendering.mitsuba_scene import fast_scene, path_scene
 from rectbench.rendering.rectified_truth import RectifiedTruth
@@ -21,6 +21,7 @@ from rectbench.rendering.variant import mitsuba
 from rectbench.rendering.world import World
 from rectbench.rendering.xml_world import XmlWorld
 from rectbench.rigs.rig import Rig
+from rectbench.types import FloatArray
 from rectbench.warps import Rectification
 
 Quality = Literal["path", "fast"]

@@ -12,8 +12,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from rectbench.cameras.arrays import BoolArray, FloatArray
 from rectbench.errors import InvalidInput
+from rectbench.types import BoolArray, FloatArray
 from rectbench.warps import Rectification
 
 

@@ -233,7 +233,7 @@ def _camera_of(properties: Any) -> Camera:
         return camera
     mi = mitsuba()
 
-    from rectbench.rigs.loading import load_rig
+    from rectbench.calibrations.reading import load_rig
 
     side = str(properties.get("side", "left"))
     if side not in ("left", "right"):

@@ -8,12 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rectbench.cameras import Camera
-from rectbench.cameras.arrays import FloatArray
 from rectbench.cameras.projection import BoolArray
 from rectbench.rendering.rectified_truth import RectifiedTruth, RectifiedView
 from rectbench.rendering.truth import Truth
 from rectbench.rendering.variant import drjit, mitsuba
 from rectbench.rigs.rig import Rig
+from rectbench.types import FloatArray
 from rectbench.warps import Rectification
 
 RAYS_AT_ONCE = 1 << 20

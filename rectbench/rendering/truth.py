@@ -17,13 +17,13 @@ from zipfile import BadZipFile
 import numpy as np
 from numpy.typing import NDArray
 
+from rectbench.calibrations.native import dump, read_native, rig_fields
 from rectbench.cameras import Camera
-from rectbench.cameras.arrays import FloatArray
 from rectbench.cameras.projection import BoolArray
 from rectbench.errors import InvalidInput
 from rectbench.rendering.variant import mitsuba
-from rectbench.rigs.native import dump, read_native, rig_fields
 from rectbench.rigs.rig import Rig
+from rectbench.types import FloatArray
 
 SIDES = ("left", "right")
 

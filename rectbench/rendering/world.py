@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from rectbench.cameras.arrays import FloatArray
+from rectbench.types import FloatArray
 
 Colour = tuple[float, float, float]
 

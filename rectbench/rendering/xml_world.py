@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rectbench.cameras.arrays import FloatArray
 from rectbench.errors import InvalidInput
 from rectbench.rendering import sensor
 from rectbench.rendering.checks import pose_fault
+from rectbench.types import FloatArray
 
 
 @dataclass(frozen=True, eq=False)

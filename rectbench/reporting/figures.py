@@ -11,15 +11,15 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rectbench.bench.progress import Advance
+from rectbench.progress import Advance
 from rectbench.reporting.style import PAGE_INCHES, STYLE, encode
+from rectbench.store.keys import code_digest
 from rectbench.writing import write_atomically
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 EXTENSIONS = ("pdf", "svg", "png")
-_DRAWING_CODE = ("reporting", "metrics", "matching")
 
 
 @dataclass(frozen=True)
@@ -109,7 +109,5 @@ def _draw(folder: Path, plan: Plan) -> None:
 def _code_digest() -> str:
     """The code that draws and that computes for pictures alone, and the version of matplotlib."""
     digest = hashlib.sha256(importlib.metadata.version("matplotlib").encode())
-    for folder in _DRAWING_CODE:
-        for file in sorted((Path(__file__).parents[1] / folder).glob("*.py")):
-            digest.update(file.read_bytes())
+    digest.update(code_digest("rectbench.reporting").encode())
     return digest.hexdigest()

@@ -12,14 +12,14 @@ from typing import Any, Literal, Protocol, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from rectbench.bench import recall
-from rectbench.bench.recall import KnownPair
-from rectbench.bench.tasks import AnyPair, CellTask
-from rectbench.cameras.arrays import FloatArray
 from rectbench.errors import InvalidInput, InvalidResult, RectbenchError
+from rectbench.experiments import recall
+from rectbench.experiments.recall import KnownPair
+from rectbench.experiments.tasks import AnyPair, CellTask
 from rectbench.metrics import Jacobians, distortion, distortion_of
 from rectbench.reporting.run_folder import Result, Run
 from rectbench.rigs import Rig
+from rectbench.types import FloatArray
 from rectbench.warps import Rectification
 
 Side = Literal["left", "right"]
@@ -116,7 +116,7 @@ class _Recalled:
         return self._fitted[key]
 
     def reconstruction(self, result: Result) -> Cloud:
-        from rectbench.matching.reconstruction import reconstruct
+        from rectbench.matching.dense.reconstruction import reconstruct
 
         images = self.pair(result).images
         return reconstruct(self.rectification(result), images.left, images.right)

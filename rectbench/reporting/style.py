@@ -7,7 +7,7 @@ import io
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from rectbench.reporting.numbers import decade
+from rectbench.reporting.tables.numbers import decade
 
 if TYPE_CHECKING:
     from matplotlib.axis import Axis

@@ -24,10 +24,10 @@ from scipy.linalg import block_diag
 from scipy.spatial.transform import Rotation
 
 from rectbench.cameras import Camera
-from rectbench.cameras.arrays import FloatArray
 from rectbench.cameras.sensitivity import parameter_names, with_changes
 from rectbench.errors import InvalidInput, UnknownName
 from rectbench.rigs.rig import Rig
+from rectbench.types import FloatArray
 
 ROTATION = ("pose.rx", "pose.ry", "pose.rz")
 TRANSLATION = ("pose.tx", "pose.ty", "pose.tz")
@@ -168,8 +168,8 @@ class RigCovariance:
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write it as YAML, which `load_covariance` reads."""
-        from rectbench.rigs.native import dump
-        from rectbench.rigs.saving import replace_files
+        from rectbench.calibrations.native import dump
+        from rectbench.calibrations.writing import replace_files
 
         content = {"parameters": list(self.parameters), "covariance": self.matrix.tolist()}
         replace_files({Path(path): dump({"source": self.source, **content} if self.source else content)})

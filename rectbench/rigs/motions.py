@@ -9,8 +9,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from rectbench.cameras.arrays import FloatArray
 from rectbench.rigs.rig import Rig
+from rectbench.types import FloatArray
 
 SIDEWAYS_ROTATION_DEG = 2.0
 """Most that the right camera of a `sideways` rig turns about each axis."""

@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from rectbench.cameras.arrays import FloatArray
 from rectbench.errors import InvalidInput
 from rectbench.rigs.motions import seeded
 from rectbench.rigs.rig import Rig
+from rectbench.types import FloatArray
 
 
 @dataclass(frozen=True)

@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rectbench.cameras import Camera
-from rectbench.cameras.arrays import FloatArray
 from rectbench.cameras.projection import as_points
 from rectbench.errors import InvalidInput
+from rectbench.types import FloatArray
 
 ROTATION_TOLERANCE = 1e-5
 """Largest entry of RᵀR - 1 that still counts as the rounding of a file with six decimals."""
@@ -100,9 +100,9 @@ class Rig:
     def save(self, path: str | os.PathLike[str], format: str = "native") -> tuple[Path, ...]:
         """Write the rig's calibration as the project's own YAML, or in another format.
 
-        Returns the files; `load_rig(path)` reads the rig back. See `rectbench.rigs.saving.save_rig`.
+        Returns the files; `load_rig(path)` reads the rig back. See `rectbench.calibrations.writing.save_rig`.
         """
-        from rectbench.rigs.saving import save_rig
+        from rectbench.calibrations.writing import save_rig
 
         return save_rig(self, path, format)
 

@@ -3,7 +3,7 @@
     rectbench_rectification: 1      # this format; marks the file as one
     size: [820, 501]                # width and height of both rectified images, pixels
     baseline_m: 0.064               # x of the right camera in the rectified left frame
-    rig: ...                        # the source cameras and their pose, see `rectbench.rigs.native`
+    rig: ...                        # the source cameras and their pose, see `rectbench.calibrations.native`
     left:
       R_rect_cam: ...               # 3x3, from the camera's frame to the rectified one
       target: ...                   # from rays to rectified pixels: perspective, or epipolar
@@ -21,11 +21,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from rectbench.calibrations.contract import Given
+from rectbench.calibrations.documents.documents import Section, blaming, one_line, parse_document
+from rectbench.calibrations.documents.sources import Source
+from rectbench.calibrations.native import dump, read_fields, rig_fields
 from rectbench.errors import InvalidInput, UnknownName
-from rectbench.rigs.documents import Section, blaming, one_line, parse_document
-from rectbench.rigs.formats import Given
-from rectbench.rigs.native import dump, read_fields, rig_fields
-from rectbench.rigs.sources import Source
 from rectbench.warps.frame import signed_baseline_m
 from rectbench.warps.profiles import Cubic, FramedProfile, Profile, Radial
 from rectbench.warps.rectification import Rectification

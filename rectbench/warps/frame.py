@@ -12,9 +12,9 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from rectbench.cameras import Camera
-from rectbench.cameras.arrays import FloatArray
 from rectbench.errors import Unsupported
 from rectbench.rigs import Rig
+from rectbench.types import FloatArray
 
 EDGE_STEP_RAD = 1e-6
 """An epipole nearer to the edge of the view than this counts as lying on the edge, outside."""

@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rectbench.cameras.arrays import FloatArray
 from rectbench.errors import Unsupported
+from rectbench.types import FloatArray
 from rectbench.warps.rectification import Rectification
 from rectbench.warps.targets import Perspective
 

@@ -10,9 +10,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rectbench.cameras.arrays import Constants, FloatArray, namespaced
-from rectbench.cameras.inversion import invert_monotone
 from rectbench.errors import InvalidInput
+from rectbench.formulas.arrays import namespaced
+from rectbench.formulas.inversion import invert_monotone
+from rectbench.types import Constants, FloatArray
 
 ANGLE_SLACK_RAD = 1e-9
 """Rays this little beyond a profile's range still count as in it (rounding at the image's corner)."""

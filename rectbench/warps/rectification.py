@@ -10,13 +10,13 @@ import cv2
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rectbench.cameras.arrays import FloatArray
 from rectbench.cameras.projection import as_points
 from rectbench.errors import InvalidInput
 from rectbench.rigs import Rig
+from rectbench.types import FloatArray
 from rectbench.warps.frame import rectifying_rotations, signed_baseline_m
-from rectbench.warps.resampling import Filter, Resampler
-from rectbench.warps.tables import FloatMap, lookup_table, reads_source
+from rectbench.warps.lookup.resampling import Filter, Resampler
+from rectbench.warps.lookup.tables import FloatMap, lookup_table, reads_source
 from rectbench.warps.targets import Target
 from rectbench.warps.warp import Warp
 
@@ -182,3 +182,9 @@ def _note(name: str, value: object) -> float | str:
 def _along_and_off(rays: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Components of rays [..., 3] along the baseline and off it."""
     return rays[..., 0], np.hypot(rays[..., 1], rays[..., 2])
+
+
+def in_frame(px_rect: FloatArray, size: tuple[int, int]) -> NDArray[np.bool_]:
+    """Mask [...] of the rectified pixels [..., 2] that lie on an image of `size`; NaN does not."""
+    inside: NDArray[np.bool_] = np.all((px_rect >= -0.5) & (px_rect <= np.array(size) - 0.5), axis=-1)
+    return inside

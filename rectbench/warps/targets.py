@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rectbench.cameras import Projection
-from rectbench.cameras.arrays import Constants, FloatArray, namespaced
 from rectbench.errors import InvalidInput
+from rectbench.formulas.arrays import namespaced
+from rectbench.types import Constants, FloatArray
 from rectbench.warps.profiles import ANGLE_SLACK_RAD, Profile, Radial
 
 

@@ -8,9 +8,10 @@ from typing import Any
 from numpy.typing import ArrayLike
 
 from rectbench.cameras import Camera
-from rectbench.cameras.arrays import Constants, FloatArray, evaluate_points
 from rectbench.cameras.projection import as_points, projected_partials
+from rectbench.formulas.arrays import evaluate_points
 from rectbench.rigs.rig import checked_rotation
+from rectbench.types import Constants, FloatArray
 from rectbench.warps.targets import Target
 
 

@@ -17,8 +17,8 @@ import pytest
 
 import rectbench as rb
 from rectbench.matching import match_features, relative_pose
-from rectbench.matching.five_point import essential_matrices
-from rectbench.matching.pose import MOST_FEATURES, PER_CELL, WORKING_PIXELS
+from rectbench.matching.pose.estimate import MOST_FEATURES, PER_CELL, WORKING_PIXELS
+from rectbench.matching.pose.five_point import essential_matrices
 from tests.matching.box_room import pair_of
 from tests.rigs_for_tests import points_before, rig
 

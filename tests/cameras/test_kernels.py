@@ -8,8 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rectbench import llvm
-from rectbench.cameras import Camera, arrays, brown
-from rectbench.cameras.inversion import invert_in_disk, invert_monotone
+from rectbench.cameras import Camera, brown
+from rectbench.formulas import arrays
+from rectbench.formulas.inversion import invert_in_disk, invert_monotone
 from tests.cameras.random_cameras import MODELS, SIZE, cameras, domain_rays
 
 needs_llvm = pytest.mark.skipif(not llvm.available(), reason=f"no LLVM: {llvm.problem()}")

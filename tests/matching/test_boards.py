@@ -11,10 +11,9 @@ from scipy.spatial.transform import Rotation
 
 import rectbench as rb
 from rectbench import board_matches
-from rectbench.matching.images import read_images
+from rectbench.images.reading import read_images
 from tests.matching.flat_board import Seen, chessboard, misses, seen_board, tag_grid
 from tests.matching.sphere_room import sphere_pair
-from tests.rigs.conftest import real_data  # noqa: F401
 from tests.rigs_for_tests import rig
 
 FISHEYE = rig("kannala-brandt", size=(560, 360), fov_deg=140)
@@ -131,12 +130,12 @@ def test_what_is_no_image_is_said() -> None:
 @pytest.mark.parametrize(
     "names", ["t265/fs1.png t265/fs2.png", "bumblebee2/garden01_left.jpg bumblebee2/garden01_right.jpg"]
 )
-def test_photographs_without_a_board_have_none(real_data: Path, names: str) -> None:  # noqa: F811
+def test_photographs_without_a_board_have_none(real_data: Path, names: str) -> None:
     images = read_images(*(real_data / "pairs" / name for name in names.split()))
     assert board_matches(*images) is None
 
 
-def test_a_photographed_grid_has_its_corners_near_the_epipolar_curves(real_data: Path) -> None:  # noqa: F811
+def test_a_photographed_grid_has_its_corners_near_the_epipolar_curves(real_data: Path) -> None:
     folder = real_data / "pairs/mynteye"
     found = board_matches(*read_images(folder / "left_fisheye_img_0.png", folder / "right_fisheye_img_0.png"))
     assert found is not None

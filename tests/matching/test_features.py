@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 
 import rectbench as rb
+from rectbench.images.reading import grey8
 from rectbench.matching import match_features
-from rectbench.matching.detectors import DETECTORS, detector_named
-from rectbench.matching.images import grey8
+from rectbench.matching.features.detectors import DETECTORS, detector_named
 
 
 def texture(seed: int = 0) -> np.ndarray:

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from rectbench.matching.five_point import essential_matrices
+from rectbench.matching.pose.five_point import essential_matrices
 
 SAMPLES = 2000
 

@@ -12,7 +12,7 @@ import pytest
 
 import rectbench as rb
 from rectbench import cli
-from rectbench.matching.evidence import refuse_same_place
+from rectbench.matching.pose.evidence import refuse_same_place
 from tests.matching.box_room import pair_of, photograph
 from tests.rigs_for_tests import rig
 

@@ -8,14 +8,13 @@ import numpy as np
 import pytest
 
 import rectbench as rb
-from tests.rigs.conftest import real_data  # noqa: F401
 
 BOARD_PX = np.stack(np.meshgrid(np.arange(250, 530, 4.0), np.arange(200, 400, 4.0)), axis=-1).reshape(-1, 2)
 """Pixels of the left image [N, 2] that show nothing but the board."""
 
 
 @pytest.mark.parametrize("method", ["conventional", "abraham", "local-homography"])
-def test_a_flat_board_is_flat(real_data: Path, method: str) -> None:  # noqa: F811
+def test_a_flat_board_is_flat(real_data: Path, method: str) -> None:
     folder = real_data / "pairs/mynteye"
     pair = rb.StereoPair.read(folder / "left_fisheye_img_0.png", folder / "right_fisheye_img_0.png")
     found = rb.reconstruct(rb.rectify(rb.load_rig("mynteye"), method), pair.left, pair.right)

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 import rectbench as rb
-from tests.rigs.conftest import real_data  # noqa: F401
 from tests.rigs.test_real_pairs import PAIRS
 
 
@@ -18,7 +17,7 @@ def read(folder: Path, *names: str) -> list[np.ndarray]:
 
 
 @pytest.mark.parametrize(("name", "left", "right"), [pair[:3] for pair in PAIRS], ids=[p[1] for p in PAIRS])
-def test_the_pose_is_the_calibrated_one(real_data: Path, name: str, left: str, right: str) -> None:  # noqa: F811
+def test_the_pose_is_the_calibrated_one(real_data: Path, name: str, left: str, right: str) -> None:
     rig = rb.load_rig(name)
     found = rb.estimate_pose(read(real_data, left, right), rig)
     rotation_deg, direction_deg = found.difference_deg(rig)
@@ -28,7 +27,7 @@ def test_the_pose_is_the_calibrated_one(real_data: Path, name: str, left: str, r
     assert found.note == ""
 
 
-def test_images_of_two_places_tell_no_pose(real_data: Path) -> None:  # noqa: F811
+def test_images_of_two_places_tell_no_pose(real_data: Path) -> None:
     images = read(real_data, "pairs/t265/fs1.png", "pairs/t265/robot2.png")
     with pytest.raises(rb.PoseNotFound, match="overlap"):
         rb.estimate_pose(images, rb.load_rig("t265"))

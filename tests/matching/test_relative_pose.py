@@ -8,8 +8,8 @@ from scipy.spatial.transform import Rotation
 
 import rectbench as rb
 from rectbench.matching import PoseEstimate, relative_pose
-from rectbench.matching.bundle import adjusted
-from rectbench.matching.epipolar import Pose, RayMatches, tangents
+from rectbench.matching.pose.bundle import adjusted
+from rectbench.matching.pose.epipolar import Pose, RayMatches, tangents
 from tests.rigs_for_tests import points_before, rig, rigs
 
 WIDE = rig("equidistant", fov_deg=230.0, size=(500, 500))

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 import rectbench as rb
-from rectbench.matching.uncalibrated import uncalibrated
+from rectbench.matching.pose.uncalibrated import uncalibrated
 from rectbench.metrics import row_error
-from rectbench.warps import Images
+from rectbench.types import Images
 from tests.matching.box_room import photograph
 
 

@@ -6,7 +6,7 @@ from rectbench_methods.local_homography import Energy, LocalHomography
 from scipy.optimize import minimize
 
 import rectbench as rb
-from rectbench.warps import pose_problem
+from rectbench.plugins.rectifier import pose_problem
 from tests.rigs_for_tests import LENSES, aligned_rig, rig
 
 method = LocalHomography()

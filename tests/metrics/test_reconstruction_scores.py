@@ -9,7 +9,7 @@ import pytest
 
 import rectbench as rb
 from rectbench.matching import Disparity
-from rectbench.metrics.coverage import in_frame
+from rectbench.warps.rectification import in_frame
 from tests.matching.sphere_room import sphere_truth, true_disparity
 from tests.rigs_for_tests import LENSES, aligned_rig, rig
 

@@ -9,14 +9,13 @@ import numpy as np
 import pytest
 
 import rectbench as rb
-from tests.rigs.conftest import real_data  # noqa: F401
 
 PAIRS = [("fs1.png", "fs2.png"), ("robot1.png", "robot2.png")]
 
 
 @pytest.mark.parametrize("names", PAIRS)
 def test_row_errors_of_a_calibration_are_explained_by_pose_and_lens_together(
-    real_data: Path,  # noqa: F811
+    real_data: Path,
     names: tuple[str, str],
 ) -> None:
     calibrated = rb.load_rig("t265")

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from rectbench.cameras import Camera
-from rectbench.cameras.arrays import FloatArray
 from rectbench.rendering.world import Material, Mesh, World
+from rectbench.types import FloatArray
 
 LOOK_NORTH = np.array([[1, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 1.5], [0, 0, 0, 1]], dtype=float)
 """World from camera: at 1.5 m, x east, y down, z north."""

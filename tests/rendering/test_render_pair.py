@@ -14,11 +14,12 @@ import pytest
 from small_worlds import LOOK_NORTH, facing_wall, fisheye, quad, world_of
 
 from rectbench.errors import InvalidInput, InvalidResult, UnknownName
-from rectbench.rendering.images import StereoPair, radiance, srgb8
+from rectbench.images.stereo_pair import StereoPair
+from rectbench.plugins.scene import Scene, scene
+from rectbench.rendering.images import radiance, srgb8
 from rectbench.rendering.integrator import fast_integrator
 from rectbench.rendering.mitsuba_scene import fast_scene, path_scene
 from rectbench.rendering.pair import Stage, render_pair
-from rectbench.rendering.scene import Scene, scene
 from rectbench.rendering.sensor import load_sensor
 from rectbench.rendering.variant import mitsuba
 from rectbench.rendering.world import Instances, Lamp, Material, Mesh, Sun, World

@@ -10,15 +10,15 @@ from matplotlib.path import Path as MplPath
 from scipy.ndimage import binary_dilation
 from small_worlds import LOOK_NORTH, fisheye, quad, world_of
 
+from rectbench.calibrations.reading import load_rig
 from rectbench.cameras import Camera
-from rectbench.cameras.arrays import FloatArray
 from rectbench.rendering import sensor as sensors
 from rectbench.rendering.images import radiance
 from rectbench.rendering.mitsuba_scene import fast_scene
 from rectbench.rendering.variant import mitsuba
 from rectbench.rendering.world import Material
-from rectbench.rigs.loading import load_rig
 from rectbench.rigs.rig import Rig
+from rectbench.types import FloatArray
 
 PINHOLE = Camera(
     "pinhole",

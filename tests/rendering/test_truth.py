@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from small_worlds import facing_wall, world_of
 
-from rectbench.cameras.arrays import FloatArray
 from rectbench.errors import InvalidInput
 from rectbench.rendering.mitsuba_scene import fast_scene
 from rectbench.rendering.tracing import trace_truth
@@ -17,6 +16,7 @@ from rectbench.rendering.truth import Truth
 from rectbench.rendering.variant import mitsuba
 from rectbench.rendering.world import Material, World
 from rectbench.rigs.rig import Rig
+from rectbench.types import FloatArray
 
 GREY = Material((0.5, 0.5, 0.5))
 

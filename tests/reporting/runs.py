@@ -12,14 +12,15 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from rectbench.bench.recall import KnownPair
 from rectbench.cameras import Camera
+from rectbench.experiments.recall import KnownPair
+from rectbench.images.stereo_pair import StereoPair
 from rectbench.metrics import distortion
-from rectbench.rendering.images import StereoPair
 from rectbench.rendering.truth import Truth
 from rectbench.reporting import Sources
 from rectbench.rigs import Rig
-from rectbench.warps import Cubic, Epipolar, Matches, Perspective, Radial, Rectification
+from rectbench.types import Matches
+from rectbench.warps import Cubic, Epipolar, Perspective, Radial, Rectification
 
 METHODS = {
     "conventional": (0.62, 0.9, 0.61),

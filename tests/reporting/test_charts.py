@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from rectbench.reporting.bars import bar_chart, draw_bars
+from rectbench.reporting.charts.bars import bar_chart, draw_bars
+from rectbench.reporting.charts.scatter import scatter
 from rectbench.reporting.run_folder import read_run
-from rectbench.reporting.scatter import scatter
 from rectbench.reporting.style import looks
 from tests.reporting.runs import failed_row, make_row, quick_rows
 

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from rectbench.reporting.columns import METRICS, Column, column
-from rectbench.reporting.numbers import decade, shown, three_digits
+from rectbench.reporting.tables.numbers import decade, shown, three_digits
 
 
 @pytest.mark.parametrize(

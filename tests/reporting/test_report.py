@@ -11,8 +11,8 @@ from typing import Any
 
 import pytest
 
-from rectbench.bench.progress import Advance, Progress
 from rectbench.errors import InvalidInput, Unavailable
+from rectbench.progress import Advance, Progress
 from rectbench.reporting import Sources, write_report
 from tests.reporting.runs import METHODS, failed_row, fake_sources, quick_rows, save_run
 

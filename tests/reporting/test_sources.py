@@ -6,8 +6,8 @@ from typing import Any
 
 import pytest
 
-from rectbench.bench import recall
 from rectbench.errors import InvalidResult
+from rectbench.experiments import recall
 from rectbench.metrics import distortion
 from rectbench.reporting.run_folder import Run, read_run
 from rectbench.reporting.sources import sources_of

@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rectbench.reporting.part_tables import all_tables
 from rectbench.reporting.run_folder import read_run
-from rectbench.reporting.tables import Table, escape_latex, to_csv, to_latex, to_markdown
-from rectbench.reporting.tabulation import distortion_table, main_tables, pair_tables
+from rectbench.reporting.tables.part_tables import all_tables
+from rectbench.reporting.tables.table import Table, escape_latex, to_csv, to_latex, to_markdown
+from rectbench.reporting.tables.tabulation import distortion_table, main_tables, pair_tables
 from tests.reporting.runs import RIGS, SCENES, failed_row, make_row, quick_rows
 
 WriteRun = Callable[..., Path]
@@ -73,7 +73,7 @@ def test_a_value_missing_from_measured_cells_is_counted(write_run: WriteRun) -> 
 
 
 def test_rms_is_pooled_and_a_maximum_stays_one(write_run: WriteRun) -> None:
-    from rectbench.reporting.summaries import summarise
+    from rectbench.reporting.tables.summaries import summarise
 
     run = read_run(write_run(quick_rows(poses=("perturbed",))))
     results = run.select(method="abraham")

@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-import os
-from pathlib import Path
-
-import numpy as np
 import pytest
 
 from rectbench import Camera, Rig
-from tests.rigs.calibration_files import R_RIGHT_LEFT, T_RIGHT_LEFT
+from tests.calibrations.calibration_files import R_RIGHT_LEFT, T_RIGHT_LEFT
 
 
 @pytest.fixture
@@ -19,35 +15,3 @@ def rig() -> Rig:
     left = Camera("kannala-brandt", (848, 800), fisheye, max_angle_deg=80)
     right = Camera("pinhole", (752, 480), pinhole)
     return Rig(left, right, R_RIGHT_LEFT, T_RIGHT_LEFT, name="mixed")
-
-
-@pytest.fixture(scope="session")
-def camchain() -> str:
-    rows = "\n".join(
-        f"  - {row}" for row in np.vstack([np.c_[R_RIGHT_LEFT, T_RIGHT_LEFT], [0, 0, 0, 1]]).tolist()
-    )
-    return f"""\
-cam0:
-  camera_model: pinhole
-  distortion_model: radtan
-  distortion_coeffs: [-0.27695497, 0.06712482, 0.00087538, 1.1556e-04]
-  intrinsics: [461.629, 460.152, 362.680, 246.049]
-  resolution: [752, 480]
-  rostopic: /cam0/image_raw
-cam1:
-  T_cn_cnm1:
-{rows}
-  camera_model: omni
-  distortion_model: none
-  intrinsics: [0.80065662, 833.006, 830.345, 373.850, 253.749]
-  resolution: [752, 480]
-"""
-
-
-@pytest.fixture(scope="session")
-def real_data() -> Path:
-    """Real pairs and calibrations, which are no part of this repository."""
-    folder = Path(os.environ.get("RECTBENCH_DATA", Path(__file__).parents[2] / "../shared/data"))
-    if not folder.is_dir():
-        pytest.skip(f"no real data at {folder}; RECTBENCH_DATA names another place")
-    return folder

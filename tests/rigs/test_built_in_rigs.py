@@ -9,7 +9,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from rectbench import Camera, load_rig
-from rectbench.rigs import MOTIONS, rig_names
+from rectbench.calibrations import rig_names
+from rectbench.rigs import MOTIONS
 
 
 @pytest.mark.parametrize("name", rig_names())

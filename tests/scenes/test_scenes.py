@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from rectbench.cameras import Camera
+from rectbench.plugins.scene import Scene
 from rectbench.rendering.pair import render_pair
-from rectbench.rendering.scene import Scene
 from rectbench.rendering.world import World
 from rectbench.rigs import Rig
 

@@ -6,8 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import rectbench as rb
-from rectbench.warps import footprints
-from rectbench.warps.footprints import Footprints, longest_px, remaining
+from rectbench.warps.lookup import footprints
+from rectbench.warps.lookup.footprints import Footprints, longest_px, remaining
 from tests.rigs_for_tests import rig, rigs
 
 METHODS = ("conventional", "abraham", "local-homography", "hartley", "fusiello")

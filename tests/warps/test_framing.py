@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import rectbench as rb
-from rectbench.warps.framing import Framing, focal_px, framed
-from rectbench.warps.inscribed import largest_rectangle
+from rectbench.warps.view.framing import Framing, focal_px, framed
+from rectbench.warps.view.inscribed import largest_rectangle
 from tests.rigs_for_tests import points_before, rig
 
 METHODS = ("conventional", "abraham", "local-homography", "hartley", "fusiello")

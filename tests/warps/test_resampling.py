@@ -9,8 +9,8 @@ import pytest
 
 import rectbench as rb
 from rectbench import llvm
-from rectbench.warps import footprints
-from rectbench.warps.resampling import REMAPPED_TYPES, Filter
+from rectbench.warps.lookup import footprints
+from rectbench.warps.lookup.resampling import REMAPPED_TYPES, Filter
 from tests.rigs_for_tests import aligned_rig, rig
 
 METHODS = ("conventional", "abraham", "local-homography", "hartley", "fusiello")

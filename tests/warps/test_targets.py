@@ -8,7 +8,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 import rectbench as rb
-from rectbench.cameras.arrays import namespaced
+from rectbench.formulas.arrays import namespaced
 from rectbench.warps.profiles import RADIAL_LIMIT_RAD, least_slope
 
 coefficients = st.tuples(st.floats(100, 900), st.floats(-300, 300), st.floats(-200, 200))

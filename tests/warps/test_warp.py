@@ -7,7 +7,7 @@ from hypothesis import given, settings
 
 import rectbench as rb
 from rectbench import llvm
-from rectbench.warps import tables
+from rectbench.warps.lookup import tables
 from tests.rigs_for_tests import points_before, rig, rigs
 
 METHODS = ("conventional", "abraham", "local-homography", "hartley", "fusiello")

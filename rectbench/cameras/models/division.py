@@ -6,8 +6,8 @@ import math
 from types import SimpleNamespace
 from typing import Any
 
-from rectbench.cameras.arrays import NUMPY
 from rectbench.cameras.lens import FOCAL_PARAMETERS, RadialLens, register
+from rectbench.formulas.arrays import NUMPY
 
 LAST_SLOPE = 1e-4
 """Slope of θ over r, to that on the axis, at which a lens with k > 0 ends, 1e-8 rad before the fold."""

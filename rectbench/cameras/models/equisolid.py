@@ -6,8 +6,8 @@ import math
 from types import SimpleNamespace
 from typing import Any
 
-from rectbench.cameras.domain import LEAST_SLOPE
 from rectbench.cameras.lens import FOCAL_PARAMETERS, RadialLens, register
+from rectbench.formulas.domain import LEAST_SLOPE
 
 
 @register

@@ -12,10 +12,10 @@ from typing import Any
 from numpy.polynomial import Polynomial
 
 from rectbench.cameras import brown
-from rectbench.cameras.arrays import NUMPY
-from rectbench.cameras.domain import LEAST_SLOPE, first_root
-from rectbench.cameras.inversion import inverse
 from rectbench.cameras.lens import FOCAL_PARAMETERS, RadialLens, register
+from rectbench.formulas.arrays import NUMPY
+from rectbench.formulas.domain import LEAST_SLOPE, first_root
+from rectbench.formulas.inversion import inverse
 
 RADIAL = ("k0", "k1", "k2", "k3", "k4", "k5")
 PRISM = {"p1": "p1", "p2": "p0", "s1": "s0", "s2": "s1", "s3": "s2", "s4": "s3"}

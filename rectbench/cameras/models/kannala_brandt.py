@@ -8,10 +8,10 @@ from typing import Any
 
 from numpy.polynomial import Polynomial
 
-from rectbench.cameras.arrays import NUMPY
-from rectbench.cameras.domain import LEAST_SLOPE, first_root
-from rectbench.cameras.inversion import inverse
 from rectbench.cameras.lens import FOCAL_PARAMETERS, RadialLens, register
+from rectbench.formulas.arrays import NUMPY
+from rectbench.formulas.domain import LEAST_SLOPE, first_root
+from rectbench.formulas.inversion import inverse
 
 
 @register

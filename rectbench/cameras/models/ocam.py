@@ -9,11 +9,11 @@ from typing import Any, ClassVar
 
 from numpy.polynomial import Polynomial
 
-from rectbench.cameras.arrays import NUMPY
-from rectbench.cameras.domain import LEAST_SLOPE, first_root
-from rectbench.cameras.inversion import inverse
 from rectbench.cameras.lens import RadialLens, register
 from rectbench.errors import InvalidInput
+from rectbench.formulas.arrays import NUMPY
+from rectbench.formulas.domain import LEAST_SLOPE, first_root
+from rectbench.formulas.inversion import inverse
 
 FARTHEST_RADIUS = 1e3
 """Where a lens that never folds ends, in units of a0: within a fraction of a degree of straight back."""

@@ -9,10 +9,10 @@ from typing import Any
 
 from numpy.polynomial import Polynomial
 
-from rectbench.cameras.domain import LEAST_SLOPE, first_root
-from rectbench.cameras.inversion import invert_in_disk
 from rectbench.cameras.lens import FOCAL_PARAMETERS, RadialLens, register
-from rectbench.cameras.monotone import edge_of_disk, monotone_radius
+from rectbench.formulas.domain import LEAST_SLOPE, first_root
+from rectbench.formulas.inversion import invert_in_disk
+from rectbench.formulas.monotone import edge_of_disk, monotone_radius
 
 COEFFICIENTS = ("k1", "k2", "p1", "p2", "k3", "k4", "sx1", "sy1")
 

@@ -11,10 +11,10 @@ from itertools import pairwise
 
 import numpy as np
 
-from rectbench.cameras.arrays import FloatArray
 from rectbench.rendering.blocks.prints import Prints
 from rectbench.rendering.blocks.shape import Finish, Model, Shape, join, together
 from rectbench.rendering.blocks.solids import box, boxes, cards, quads, rod, turned
+from rectbench.types import FloatArray
 
 STOREY_M = 3.0
 PLINTH_M = 0.45

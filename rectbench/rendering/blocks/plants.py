@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rectbench.cameras.arrays import FloatArray
 from rectbench.rendering.blocks.prints import Prints
 from rectbench.rendering.blocks.shape import Finish, Model, Shape, join
 from rectbench.rendering.blocks.solids import loft, tubes, turned
+from rectbench.types import FloatArray
 
 GOLDEN_ANGLE = np.radians(137.50776)
 """Between one shoot and the next around a stem, so that none shades another."""

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rectbench.cameras.arrays import FloatArray
 from rectbench.rendering.world import Material, Mesh
+from rectbench.types import FloatArray
 
 GOLDEN_STEPS = np.array([0.7548776662, 0.5698402910])
 """Multiples of these, modulo 1, fill the unit square evenly (Roberts' R2 sequence)."""

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rectbench.cameras.arrays import FloatArray
 from rectbench.rendering.blocks.shape import Shape
+from rectbench.types import FloatArray
 
 _BOX_FACES = np.array([
     [[0, 0, 0], [1, 0, 0], [1, 0, 1], [0, 0, 1]],  # south

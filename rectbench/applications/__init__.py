@@ -1,0 +1,1 @@
+"""What is done for one rig or one folder: choose, rectify, check, examine."""

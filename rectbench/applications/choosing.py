@@ -1,0 +1,176 @@
+"""Which rectifier is the best for a rig: all that apply, measured in the frame that is asked for.
+
+The rule: of the methods whose rows are as good as the best ones', the one with the least log distortion of
+the pixels that it keeps, each showing the same share of the view.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import pandas as pd
+
+from rectbench.errors import InvalidInput, Unsupported
+from rectbench.experiments.execution.outcomes import outcome_of
+from rectbench.metrics import frame_costs, row_error
+from rectbench.plugins.fitting import checked_options, fit
+from rectbench.plugins.loading import Plugin, registry
+from rectbench.plugins.rectifier import Problem, pose_problem
+from rectbench.rigs import Rig
+from rectbench.types import Images, Matches
+from rectbench.warps import Framing, Rectification, framed
+
+COVERAGE = 0.95
+"""The share of the source pixels that every method is made to show where nothing else is asked."""
+ROWS_AS_GOOD_PX = 0.25
+"""Rows count as good as the best ones while their median error is no more than this above, source pixels."""
+RANKING = "log_distortion_kept"
+ROWS = "row_error_source_median_px"
+
+
+@dataclass(frozen=True, eq=False)
+class Candidate:
+    """One method and what was measured of it; where it does not apply, the reason."""
+
+    method: str
+    rectification: Rectification | None = None
+    measured: Mapping[str, float] = field(default_factory=dict)
+    status: str = "ok"
+    reason: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Choice:
+    """The methods that were tried, and the best of them."""
+
+    candidates: tuple[Candidate, ...]
+    """The best first; then by rank, those that do not apply last."""
+    framing: Framing
+
+    @property
+    def best(self) -> Candidate:
+        """The chosen one."""
+        return self.candidates[0]
+
+    @property
+    def rectification(self) -> Rectification:
+        """The chosen method's, in the frame that was asked for."""
+        assert self.best.rectification is not None  # `best_method` raises where no method applies
+        return self.best.rectification
+
+    @property
+    def table(self) -> pd.DataFrame:
+        """One row a method: method, status, reason and what was measured."""
+        return pd.DataFrame(
+            [
+                {"method": c.method, "status": c.status, "reason": c.reason, **c.measured}
+                for c in self.candidates
+            ]
+        )
+
+    @property
+    def why(self) -> str:
+        """The rule and how it fell out, in a sentence."""
+        best = self.best.measured
+        sentence = (
+            f"{self.best.method} has the least log distortion, {best[RANKING]:.3f}, where each method shows "
+            f"{_shown(self.framing)}"
+        )
+        others = [c for c in self.candidates[1:] if c.rectification is not None]
+        rivals = [c for c in others if _rows_are_good(c, self.candidates)]
+        if rivals:
+            sentence += f"; next is {rivals[0].method} with {rivals[0].measured[RANKING]:.3f}"
+        worse = [c.method for c in others if not _rows_are_good(c, self.candidates)]
+        if worse:
+            sentence += (
+                f"; not counting {' and '.join(worse)}, whose rows are over {ROWS_AS_GOOD_PX:g} px worse"
+            )
+        return sentence
+
+
+def best_method(
+    rig: Rig,
+    *,
+    framing: Framing | None = None,
+    images: Images | None = None,
+    matches: Matches | None = None,
+    trusted: Matches | None = None,
+    methods: Sequence[str] | None = None,
+    seed: int = 0,
+) -> Choice:
+    """Try all methods that apply to a rig, and choose.
+
+    Parameters
+    ----------
+    rig : the calibrated rig.
+    framing : what each method is made to show, a coverage or a field of view, and how large. 95 % of the
+        source pixels where it does not say what.
+    images, matches : what methods may work from beside the rig, see `rectify`.
+    trusted : correspondences by which rows are judged: of matches, or of the corners of a board. Without
+        them all rows count as good.
+    methods : names to try; all by default.
+    seed : of the methods' random choices.
+
+    Raises InvalidInput for a framing in which methods cannot be compared, Unsupported with the reasons
+    where no method applies.
+    """
+    chosen = framing or Framing()
+    if chosen.crop is not None:
+        raise InvalidInput(
+            f"methods are compared where all show the same, not in the crop {chosen.crop}; expected a "
+            "coverage or fov_deg"
+        )
+    if chosen.size is not None and chosen.focal_px is not None:
+        raise InvalidInput("size and focal_px together say what is shown; expected one of them to compare in")
+    if chosen.fov_deg is None and chosen.coverage is None:
+        chosen = replace(chosen, coverage=COVERAGE)
+    problem = pose_problem(rig, images=images, matches=matches, seed=seed)
+    found = registry("methods")
+    plugins = found.plugins() if methods is None else [found.get(name) for name in methods]
+    tried = [_tried(plugin, problem, chosen, trusted) for plugin in plugins]
+    if not any(candidate.rectification for candidate in tried):
+        reasons = "; ".join(f"{candidate.method}: {candidate.reason}" for candidate in tried)
+        raise Unsupported(f"no method applies to rig {rig.name}: {reasons}")
+    return Choice(tuple(sorted(tried, key=lambda candidate: _rank(candidate, tried))), chosen)
+
+
+def uncalibrated_methods() -> list[str]:
+    """The methods that need no calibration: they work from matches or images alone."""
+    return [plugin.name for plugin in registry("methods").plugins() if "pose" not in plugin.value.needs]
+
+
+def _tried(plugin: Plugin, problem: Problem, framing: Framing, trusted: Matches | None) -> Candidate:
+    if "images" in plugin.value.needs and problem.images is None:
+        return Candidate(plugin.name, status="unsupported", reason="works from images, and there are none")
+    try:
+        rect = framed(fit(plugin, problem, checked_options(plugin, {})), framing)
+        measured = frame_costs(rect, problem.rig)
+        if trusted is not None:
+            measured[ROWS] = row_error(rect, *trusted).columns()[ROWS]
+    except Exception as error:  # a plugin may raise anything, and the others are still to be tried
+        outcome = outcome_of(error)
+        return Candidate(plugin.name, status=outcome.status, reason=outcome.reason)
+    return Candidate(plugin.name, rect, measured)
+
+
+def _rank(candidate: Candidate, all_tried: Sequence[Candidate]) -> tuple[bool, bool, float]:
+    value = candidate.measured.get(RANKING, math.inf)
+    return (
+        candidate.rectification is None,
+        not _rows_are_good(candidate, all_tried),
+        value if math.isfinite(value) else math.inf,
+    )
+
+
+def _rows_are_good(candidate: Candidate, all_tried: Sequence[Candidate]) -> bool:
+    known = [c.measured[ROWS] for c in all_tried if math.isfinite(c.measured.get(ROWS, math.nan))]
+    return not known or candidate.measured.get(ROWS, math.inf) <= min(known) + ROWS_AS_GOOD_PX
+
+
+def _shown(framing: Framing) -> str:
+    if framing.fov_deg is not None:
+        across, down = framing.fov_deg
+        return f"a view of {across:g}x{down:g}°"
+    return f"{framing.coverage:.0%} of the source pixels"

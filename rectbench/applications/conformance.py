@@ -1,0 +1,198 @@
+"""One suite of checks that every rectifier passes, a third party's as the built-in ones."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from rectbench.calibrations import load_rig
+from rectbench.errors import Unsupported
+from rectbench.experiments.execution.outcomes import outcome_of
+from rectbench.metrics import row_error
+from rectbench.pairs.pairs import placed
+from rectbench.plugins.fitting import checked_options, fit
+from rectbench.plugins.loading import Plugin
+from rectbench.plugins.rectifier import Problem, pose_problem
+from rectbench.rigs import Rig
+from rectbench.types import FloatArray, Matches
+from rectbench.warps import Rectification, Warp
+
+RIGS = ("perspective-toed-in", "bumblebee2", "t265", "sony-as200v", "mynteye")
+"""Perspective and fisheye, in several models, with parallel and turned axes."""
+IMAGE_WIDTH = 320
+
+CLOSURE_PX = 1e-6
+DERIVATIVE_ERROR = 1e-5
+"""Relative; what central differences of float64 leave over."""
+ROW_ERROR_PX = 1e-6
+STEP_PX = 1e-3
+SCORED_SHARE = 0.05
+"""A method maps at least this share of the evaluation pixels."""
+
+Result = Literal["passed", "failed", "unsupported"]
+
+
+@dataclass(frozen=True)
+class Finding:
+    """What one check found on one rig."""
+
+    rig: str
+    check: str
+    result: Result
+    detail: str
+
+
+def check_method(plugin: Plugin) -> Iterator[Finding]:
+    """All checks of a rectifier on several rigs, as they are done.
+
+    A rig the method refuses as Unsupported fails nothing, but refusing all of them does.
+    """
+    yield _described(plugin)
+    supported = False
+    for name in RIGS:
+        rig = placed(load_rig(name), "check", "as-calibrated", 0, IMAGE_WIDTH)
+        problem = pose_problem(rig)
+        try:
+            rectification = fit(plugin, problem, checked_options(plugin, {}))
+        except Unsupported as refusal:
+            yield Finding(name, "fit", "unsupported", str(refusal))
+            continue
+        except Exception as error:  # a plugin may raise anything
+            yield Finding(name, "fit", "failed", outcome_of(error).reason)
+            continue
+        supported = True
+        yield Finding(name, "fit", "passed", f"{rectification.size[0]}x{rectification.size[1]} px")
+        for title, check in _CHECKS.items():
+            yield _found(name, title, check, plugin, problem, rectification)
+    if not supported:
+        yield Finding("all", "fit", "failed", "the method serves none of the rigs")
+
+
+Check = Callable[[Plugin, Problem, Rectification], tuple[bool, str]]
+
+
+def _found(
+    rig: str, title: str, check: Check, plugin: Plugin, problem: Problem, rect: Rectification
+) -> Finding:
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", RuntimeWarning)  # NaN is what stands for "no pixel here"
+            passed, detail = check(plugin, problem, rect)
+    except Exception as error:  # a plugin's own warp may raise anything
+        passed, detail = False, outcome_of(error).reason
+    return Finding(rig, title, "passed" if passed else "failed", detail)
+
+
+def _described(plugin: Plugin) -> Finding:
+    documented = all(field.description for field in plugin.value.Options.model_fields.values())
+    detail = plugin.summary or "the class has no docstring; expected one line that says what it is"
+    if not documented:
+        detail = "an option has no description"
+    return Finding("-", "described", "passed" if plugin.summary and documented else "failed", detail)
+
+
+def _sides(problem: Problem, rect: Rectification) -> tuple[tuple[str, Warp, FloatArray], ...]:
+    return ("left", rect.left, problem.pixels_left), ("right", rect.right, problem.pixels_right)
+
+
+def _maps(plugin: Plugin, problem: Problem, rect: Rectification) -> tuple[bool, str]:
+    width, height = rect.size
+    for side in ("left", "right"):
+        for table in rect.maps(side):
+            if table.dtype != np.float32 or table.shape != (height, width):
+                return False, f"{side}: {table.dtype} {table.shape}; expected float32 {(height, width)}"
+            if not np.isfinite(table).all():
+                return False, f"{side}: not finite"
+    shares = [float(rect.valid("left").mean()), float(rect.valid("right").mean())]
+    return min(shares) > 0, f"{shares[0]:.0%} and {shares[1]:.0%} of the output are valid"
+
+
+def _closure(plugin: Plugin, problem: Problem, rect: Rectification) -> tuple[bool, str]:
+    worst, mapped = 0.0, []
+    for _, warp, pixels in _sides(problem, rect):
+        there = warp.forward(pixels)
+        known = np.isfinite(there).all(axis=-1)
+        mapped.append(known.mean())
+        if known.any():
+            back = warp.inverse(there[known])
+            worst = max(worst, float(np.linalg.norm(back - pixels[known], axis=-1).max()))  # NaN stays NaN
+            worst = np.inf if np.isnan(back).any() else worst
+    share = float(min(mapped))
+    if share < SCORED_SHARE:
+        return False, f"only {share:.0%} of the pixels are mapped"
+    return worst <= CLOSURE_PX, f"{worst:.1e} px, {share:.0%} of the pixels mapped"
+
+
+def _jacobian(plugin: Plugin, problem: Problem, rect: Rectification) -> tuple[bool, str]:
+    worst = 0.0
+    for side, warp, pixels in _sides(problem, rect):
+        exact = warp.jacobian(pixels)
+        if exact.shape != (len(pixels), 2, 2):
+            return False, f"{side}: shape {exact.shape}; expected {(len(pixels), 2, 2)}"
+        columns = []
+        for axis in range(2):
+            step = np.zeros(2)
+            step[axis] = STEP_PX
+            columns.append((warp.forward(pixels + step) - warp.forward(pixels - step)) / (2 * STEP_PX))
+        numeric = np.stack(columns, axis=-1)
+        inner = np.isfinite(numeric).all(axis=(1, 2))
+        if not np.isfinite(exact[inner]).all():
+            return False, f"{side}: NaN where the warp has values"
+        scale = np.abs(exact[inner]).max(axis=(1, 2), keepdims=True)
+        worst = max(worst, float((np.abs(exact - numeric)[inner] / scale).max(initial=0)))
+    return worst <= DERIVATIVE_ERROR, f"{worst:.1e} off central differences"
+
+
+def _orientation(plugin: Plugin, problem: Problem, rect: Rectification) -> tuple[bool, str]:
+    shares = []
+    for _, warp, pixels in _sides(problem, rect):
+        determinant = np.linalg.det(warp.jacobian(pixels))
+        shares.append(float((determinant[np.isfinite(determinant)] > 0).mean()))
+    return min(shares) == 1, f"det J > 0 at {min(shares):.1%} of the mapped pixels"
+
+
+def _rows(plugin: Plugin, problem: Problem, rect: Rectification) -> tuple[bool, str]:
+    errors = row_error(rect, *_unseen_matches(problem.rig)).rectified_px
+    errors = errors[np.isfinite(errors)]
+    if not errors.size:
+        return False, "no correspondence is mapped in both images"
+    worst = float(errors.max())
+    if "pose" not in plugin.value.needs:
+        return True, f"{worst:.1e} px; the method does not know the pose"
+    return worst <= ROW_ERROR_PX, f"{worst:.1e} px with the exact pose"
+
+
+def _unseen_matches(rig: Rig, count: int = 3000) -> Matches:
+    """Where random points all over the view are seen: none that a method was given."""
+    rng = np.random.default_rng(1)
+    pixels = rng.uniform(0, np.array(rig.left.size) - 1, (count, 2))
+    rays, ok_left = rig.left.unproject(pixels)
+    distances = rig.baseline_m * np.exp(rng.uniform(np.log(3), np.log(1000), count))
+    pixels_right, ok_right = rig.right.project(rig.right_from_left(rays * distances[:, None]))
+    seen = ok_left & ok_right & rig.right.contains(pixels_right)
+    return Matches(pixels[seen], pixels_right[seen])
+
+
+def _repeatable(plugin: Plugin, problem: Problem, rect: Rectification) -> tuple[bool, str]:
+    again = fit(plugin, problem, checked_options(plugin, {}))
+    if again.size != rect.size:
+        return False, f"{rect.size} px, then {again.size} px"
+    for side in ("left", "right"):
+        for first, second in zip(rect.maps(side), again.maps(side), strict=True):
+            if not np.array_equal(first, second):
+                return False, f"{side} maps differ by up to {float(np.abs(first - second).max()):.1e} px"
+    return True, "the same maps twice"
+
+
+_CHECKS: dict[str, Check] = {
+    "maps": _maps,
+    "closure": _closure,
+    "jacobian": _jacobian,
+    "orientation": _orientation,
+    "rows": _rows,
+    "repeatable": _repeatable,
+}

@@ -1,0 +1,1 @@
+"""A rendered dataset for other tools."""

@@ -1,0 +1,200 @@
+"""A rendered dataset as a folder that other tools open: images, truth, rectified pairs, calibrations.
+
+One pair a seed, its files named by the seed and sorted by kind; `dataset_readme` says what each kind
+is. A pair is whole when `pairs/NAME.json` is there, written last, with the SHA-256 of each of its files: an
+export that was interrupted goes on with the pairs that are not, and one with more seeds adds to those there.
+The same settings and seeds give the same bytes.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from hashlib import sha256
+from pathlib import Path
+from typing import Any
+
+from rectbench.applications.export.dataset_pair import (
+    calibration_files,
+    image_files,
+    pair_facts,
+    rectified_files,
+    truth_files,
+)
+from rectbench.applications.export.dataset_readme import readme_text
+from rectbench.errors import InvalidInput
+from rectbench.pairs.pairs import RENDERING_PACKAGES, placed, render_seed, set_stage
+from rectbench.pairs.rig_numbers import rig_numbers
+from rectbench.plugins.fitting import checked_options, fit
+from rectbench.plugins.loading import Plugin, registry
+from rectbench.plugins.rectifier import Options, pose_problem
+from rectbench.progress import Progress
+from rectbench.rigs import Rig
+from rectbench.store.keys import code_digest, digest, file_digest, versions
+from rectbench.warps import Rectification
+from rectbench.writing import write_atomically
+
+DATASET_FILE, README_FILE, PAIRS_FOLDER = "dataset.json", "README.md", "pairs"
+VERSION = 1
+
+
+@dataclass(frozen=True)
+class Export:
+    """What is exported: a rig in a scene, once a seed, rectified by a method."""
+
+    scene_source: str
+    """The scene's name, or the absolute path of its file."""
+    rig: Rig
+    motion: str = "as-calibrated"
+    spp: int = 64
+    quality: str = "path"
+    image_width: int | None = None
+    method: str = "local-homography"
+    options: Mapping[str, Any] = field(default_factory=dict)
+
+    def settings(self) -> dict[str, Any]:
+        """All that shapes the files of a pair, but for its seed, as JSON."""
+        scene, method = registry("scenes").get(self.scene_source), self.plugin()
+        return {
+            "scene": scene.name,
+            "scene_source": scene.digest,
+            "rig": rig_numbers(self.rig),
+            "motion": self.motion,
+            "image_width": self.image_width,
+            "quality": self.quality,
+            "spp": self.spp,
+            "method": method.name,
+            "method_source": method.digest,
+            "options": self.checked_options().model_dump(mode="json"),
+            "code": code_digest(__name__),
+            "versions": dict(versions("rectbench", *RENDERING_PACKAGES)),
+        }
+
+    def plugin(self) -> Plugin:
+        """The method; raises InvalidInput for one that works from matches, whose rows are not exact."""
+        plugin = registry("methods").get(self.method)
+        if "pose" not in plugin.value.needs:
+            raise InvalidInput(
+                f"{plugin.name} works from matches, so its rows do not agree exactly; "
+                "expected a method that works from the calibrated pose"
+            )
+        return plugin
+
+    def checked_options(self) -> Options:
+        """The method's options, those not given at their defaults."""
+        return checked_options(self.plugin(), self.options)
+
+    def rig_of(self, seed: int) -> Rig:
+        """The true rig of a seed's pair."""
+        scene = registry("scenes").get(self.scene_source).name
+        return placed(self.rig, scene, self.motion, seed, self.image_width)
+
+    def rectification(self, seed: int) -> Rectification:
+        """The rectification of that rig."""
+        return fit(self.plugin(), pose_problem(self.rig_of(seed), seed=seed), self.checked_options())
+
+
+@dataclass(frozen=True)
+class Exported:
+    """What an export left."""
+
+    folder: Path
+    rendered: tuple[int, ...]
+    """Seeds whose pairs were made."""
+    kept: tuple[int, ...]
+    """Seeds whose pairs were there already."""
+
+
+def export_dataset(
+    export: Export, seeds: Sequence[int], out: Path, progress: Progress | None = None
+) -> Exported:
+    """Write the pairs of these seeds into a folder, with `dataset.json` and `README.md`.
+
+    Raises InvalidInput where the folder holds a dataset of other settings, and Unsupported where the method
+    cannot serve the rig, before anything is rendered; Unavailable where the disk takes no more.
+    """
+    export.rig_of(seeds[0])  # a motion that does not exist is no other setting
+    settings = export.settings()
+    mark = digest(settings)
+    found = _manifests(out)
+    _check_same(out, found, mark)
+    whole = {seed for seed in seeds if _is_whole(out, found.get(_name(seed)))}
+    missing = [seed for seed in seeds if seed not in whole]
+    if missing:
+        export.rectification(missing[0])  # a method that cannot serve this rig says so before the work begins
+    with (progress or Progress()).stage("pairs", len(missing)) as advance:
+        for seed in missing:
+            found[_name(seed)] = _write_pair(export, seed, mark, out)
+            advance()
+    pairs = [found[name] for name in sorted(found) if _is_whole(out, found[name])]
+    content = {"rectbench_dataset": VERSION, "settings": settings, "pairs": pairs}
+    write_atomically(out / README_FILE, readme_text(settings, pairs))
+    write_atomically(out / DATASET_FILE, _json(content))
+    return Exported(out, tuple(missing), tuple(seed for seed in seeds if seed in whole))
+
+
+def _name(seed: int) -> str:
+    return f"{seed:06d}"
+
+
+def _write_pair(export: Export, seed: int, mark: str, out: Path) -> dict[str, Any]:
+    """Render and write a pair; its manifest, which is written last."""
+    rect = export.rectification(seed)
+    scene, name = registry("scenes").get(export.scene_source).name, _name(seed)
+    stage = set_stage(export.scene_source, seed, export.quality)
+    truth, rectified = stage.survey(rect.rig), stage.survey_rectified(rect)
+    noise = render_seed(scene, export.rig.name, export.motion, seed)
+    images = stage.photograph(rect.rig, seed=noise, spp=export.spp)
+    calibrations, refused = calibration_files(rect.rig, name)
+    contents = {
+        **image_files(images, name),
+        **truth_files(truth, name),
+        **rectified_files(images, rectified, export.plugin().name, name),
+        **calibrations,
+    }
+    for path, content in contents.items():
+        write_atomically(out / path, content)
+    manifest = {
+        "name": name,
+        "seed": seed,
+        "settings": mark,
+        **pair_facts(truth, rectified),
+        "calibrations_not_written": refused,
+        "files": {path: sha256(content).hexdigest() for path, content in sorted(contents.items())},
+    }
+    write_atomically(out / PAIRS_FOLDER / f"{name}.json", _json(manifest))
+    return manifest
+
+
+def _json(content: Any) -> str:
+    return json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def _manifests(out: Path) -> dict[str, dict[str, Any]]:
+    """What is told of the pairs in a folder; one that cannot be read counts as not there."""
+    found: dict[str, dict[str, Any]] = {}
+    for path in sorted((out / PAIRS_FOLDER).glob("*.json")):
+        try:
+            content = json.loads(path.read_text(encoding="utf-8"))
+        except (OSError, ValueError):
+            continue
+        if isinstance(content, dict) and content.get("name") == path.stem:
+            found[path.stem] = content
+    return found
+
+
+def _check_same(out: Path, found: Mapping[str, Mapping[str, Any]], mark: str) -> None:
+    for name, manifest in found.items():
+        if manifest.get("settings") != mark:
+            raise InvalidInput(
+                f"{out} holds pair {name} of other settings, scene, rig or version; expected another folder, "
+                f"or the settings in its {DATASET_FILE}"
+            )
+
+
+def _is_whole(out: Path, manifest: Mapping[str, Any] | None) -> bool:
+    files = (manifest or {}).get("files")
+    return isinstance(files, dict) and all(
+        (out / path).is_file() and file_digest(out / path) == told for path, told in files.items()
+    )

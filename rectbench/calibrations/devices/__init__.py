@@ -1,0 +1,1 @@
+"""Formats of cameras and their drivers."""

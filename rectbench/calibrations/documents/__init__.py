@@ -1,0 +1,1 @@
+"""Files as text and plain data: JSON, YAML, XML, lists of numbers."""

@@ -1,0 +1,1 @@
+"""Formats of visual odometry and of its calibrators."""

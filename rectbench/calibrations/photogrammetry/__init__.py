@@ -1,0 +1,1 @@
+"""Formats of structure from motion."""

@@ -1,0 +1,1 @@
+"""Reports, their plans and cells; claims, the gate, comparisons."""

@@ -1,0 +1,1 @@
+"""Cells run in worker processes that can crash, hang or swallow memory alone."""

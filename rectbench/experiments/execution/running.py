@@ -1,0 +1,208 @@
+"""Runs a plan: what the store has is taken, pairs are rendered, then cells run; in plan order out."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from rectbench.errors import InvalidInput
+from rectbench.experiments.execution.cells import CELLS, cell_inputs, keep, run_cell, run_pair, stored_outcome
+from rectbench.experiments.execution.outcomes import Outcome
+from rectbench.experiments.execution.pool import Job, Workers
+from rectbench.experiments.execution.worker import Limits
+from rectbench.experiments.planning import Plan, Selection, find_report, make_plan
+from rectbench.experiments.run_folder import check_writable, facts_of, table_of, write_run
+from rectbench.experiments.spec import Report
+from rectbench.experiments.tasks import CellTask, PairTask
+from rectbench.pairs.pairs import IMAGES, TRUTH, image_inputs, is_made, truth_inputs
+from rectbench.plugins.loading import is_path
+from rectbench.progress import Progress, progress_for
+from rectbench.store.store import Store
+
+RUNS = Path("runs")
+"""Where run folders go unless the user says otherwise."""
+
+
+@dataclass(frozen=True)
+class Interrupted(Exception):
+    """Ctrl-C: what was finished is in the store, and the next run goes on from there."""
+
+    finished: int
+    cells: int
+
+    def __str__(self) -> str:
+        return f"interrupted; {self.finished} of {self.cells} cells are kept, the same command goes on there"
+
+
+def run(
+    report: Report | str | Path,
+    out: str | Path | None = None,
+    *,
+    methods: Sequence[str] | None = None,
+    scenes: Sequence[str] | None = None,
+    rigs: Sequence[str] | None = None,
+    seeds: Sequence[int] | None = None,
+    data: str | Path | None = None,
+    options: Mapping[str, Mapping[str, Any]] | None = None,
+    jobs: int | None = None,
+    dask: str | None = None,
+    fresh: bool = False,
+    progress: bool | None = None,
+) -> pd.DataFrame:
+    """Run a report and write its run.json, results.parquet and results.csv.
+
+    Parameters
+    ----------
+    report : a report's name, path, or the report itself.
+    out : the run's folder; `runs/<report>` by default.
+    methods, scenes, rigs, seeds : what to run in the place of the report's own; names or paths. A "+"
+        before a name adds it to the report's own.
+    data : the folder of photographs, for a report that takes them.
+    options : options by method and name, laid over the report's.
+    jobs : worker processes; as many as there are cores by default. The rows do not hang on it.
+    dask : address of a dask.distributed scheduler that runs the cells in the place of local workers.
+    fresh : make again what the store has of this run.
+    progress : bars on stderr; on a terminal alone by default.
+
+    Returns one row a cell, in the report's order. Raises InvalidInput before anything runs where the
+    report, a name, a file or an option cannot be used; Interrupted on Ctrl-C.
+    """
+    begin = time.monotonic()
+    selection = Selection(methods, scenes, rigs, seeds, options or {})
+    plan = make_plan(find_report(report), selection, data)
+    count, folder = _checked_jobs(jobs), run_folder(plan.report, out)
+    check_writable(folder)
+    threads = max(1, (os.cpu_count() or 1) // count)
+    runner = _Runner(plan, Store.default(), count, threads, progress_for(progress))
+    if fresh:
+        runner.forget()
+    table = table_of(plan, runner.outcomes(dask))
+    facts = {
+        **facts_of(plan),
+        "report_file": _file_of(report),
+        "wall_s": round(time.monotonic() - begin, 2),
+        "jobs": count,
+        "threads_per_job": threads,
+        "dask": dask,
+    }
+    write_run(folder, table, facts)
+    return table
+
+
+def _file_of(report: Report | str | Path) -> str | None:
+    return None if isinstance(report, Report) or not is_path(report) else str(Path(report).resolve())
+
+
+def run_folder(report: Report | str | Path, out: str | Path | None = None) -> Path:
+    """Where a run of the report goes."""
+    return Path(out) if out is not None else RUNS / find_report(report).name
+
+
+def _checked_jobs(jobs: int | None) -> int:
+    if jobs is None:
+        return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    if isinstance(jobs, bool) or not isinstance(jobs, int) or jobs < 1:
+        raise InvalidInput(f"jobs is {jobs!r}; expected a whole number from 1 on")
+    return jobs
+
+
+class _Runner:
+    """One run of a plan against a store."""
+
+    def __init__(self, plan: Plan, store: Store, jobs: int, threads: int, progress: Progress) -> None:
+        self.plan, self.store, self.jobs, self.progress = plan, store, jobs, progress
+        self.limits = Limits(threads, round(plan.report.memory_gib * 2**30))
+
+    def forget(self) -> None:
+        """Drop from the store what this plan would find there."""
+        for task in self.plan.tasks:
+            self.store.drop(self.store.place(CELLS, cell_inputs(task)))
+        for pair in self.plan.pairs:
+            if isinstance(pair, PairTask):
+                self.store.drop(self.store.place(TRUTH, truth_inputs(pair)))
+                self.store.drop(self.store.place(IMAGES, image_inputs(pair)))
+
+    def outcomes(self, dask: str | None) -> list[Outcome]:
+        """The outcome of each task, in the plan's order."""
+        tasks = self.plan.tasks
+        found = [stored_outcome(task, self.store) for task in tasks]
+        try:
+            if dask is not None:
+                self._run_on_cluster(dask, found)
+            else:
+                with Workers(self.jobs, self.limits) as workers:
+                    self._make_pairs(workers, found)
+                    self._run_cells(workers, found, alone=False)
+                with Workers(1, replace(self.limits, threads=self.jobs * self.limits.threads)) as worker:
+                    self._run_cells(worker, found, alone=True)
+        except KeyboardInterrupt:
+            done = sum(outcome is not None for outcome in found)
+            raise Interrupted(done, len(tasks)) from None
+        return [outcome for outcome in found if outcome is not None]
+
+    def _run_cells(self, workers: Workers, found: list[Outcome | None], *, alone: bool) -> None:
+        """Run those cells without an outcome that are to run alone, or those that need not."""
+        tasks = self.plan.tasks
+        missing = [i for i, outcome in enumerate(found) if outcome is None and tasks[i].alone == alone]
+        if alone and not missing:
+            return
+        done = sum(outcome is not None for outcome in found)
+        stage = "cells, one at a time" if alone else "cells"
+        with self.progress.stage(stage, done + len(missing)) as advance:
+            for _ in range(done):
+                advance()
+            for position, outcome in workers.run([self._cell_job(tasks[index]) for index in missing]):
+                found[missing[position]] = outcome
+                advance()
+
+    def _make_pairs(self, workers: Workers, found: list[Outcome | None]) -> None:
+        """Render the pairs the store lacks; the cells of one that cannot be made end as it did."""
+        # A pair with images is made even if its rows are all known: the report's pictures show it.
+        wanted = dict.fromkeys(
+            task.pair
+            for task, outcome in zip(self.plan.tasks, found, strict=True)
+            if isinstance(task.pair, PairTask) and (outcome is None or task.pair.images)
+        )
+        missing = [pair for pair in wanted if not is_made(pair, self.store)]
+        if not missing:
+            return
+        failed = {}
+        with self.progress.stage("rendering", len(missing)) as advance:
+            for position, outcome in workers.run([self._pair_job(pair) for pair in missing]):
+                if not outcome.ok:
+                    failed[missing[position]] = outcome
+                advance()
+        for index, task in enumerate(self.plan.tasks):
+            if found[index] is None and task.pair in failed:
+                pair = failed[task.pair]
+                found[index] = replace(pair, reason=f"rendering the pair: {pair.reason}")
+
+    def _pair_job(self, pair: PairTask) -> Job:
+        arguments = (pair, self.store.root)
+        return Job(run_pair, arguments, self.plan.report.render_timeout_s, ((pair.scene_source, pair.seed),))
+
+    def _cell_job(self, task: CellTask) -> Job:
+        return Job(run_cell, (task, self.store.root), self.plan.report.timeout_s, (task.pair,))
+
+    def _run_on_cluster(self, address: str, found: list[Outcome | None]) -> None:
+        from rectbench.experiments.execution.cluster import run_on_cluster
+
+        missing = [index for index, outcome in enumerate(found) if outcome is None]
+        report = self.plan.report
+        ended: Iterable[tuple[int, Outcome]] = run_on_cluster(
+            address,
+            [self.plan.tasks[index] for index in missing],
+            timeout_s=report.timeout_s + report.render_timeout_s,  # the first cell of a pair renders it
+            limits=self.limits,
+        )
+        with self.progress.stage("cells", len(missing)) as advance:
+            for position, outcome in ended:
+                found[missing[position]] = outcome
+                keep(self.plan.tasks[missing[position]], outcome, self.store)
+                advance()

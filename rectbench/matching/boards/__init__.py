@@ -1,0 +1,1 @@
+"""Calibration boards found in both images."""

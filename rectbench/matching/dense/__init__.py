@@ -1,0 +1,1 @@
+"""Dense disparity and the points it gives."""

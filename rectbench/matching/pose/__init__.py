@@ -1,0 +1,1 @@
+"""The relative pose that matches determine."""

@@ -1,0 +1,83 @@
+"""The fundamental matrix of pinhole matches: normalised eight points, refined on the Sampson error."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.optimize import least_squares
+from scipy.spatial.transform import Rotation
+
+from rectbench.cameras.projection import as_points
+from rectbench.errors import InvalidInput
+from rectbench.types import FloatArray
+
+DEGENERATE = 1e-9
+"""Spread, relative to where the points lie, that is rounding."""
+
+
+def fundamental_matrix(px_left: ArrayLike, px_right: ArrayLike) -> FloatArray:
+    """F [3, 3] of rank 2 with (right, 1)ᵀ F (left, 1) = 0, Frobenius norm 1, from matches without outliers.
+
+    Hartley's normalised eight-point solution (In Defense of the Eight-Point Algorithm, 1997), then
+    Levenberg-Marquardt on the Sampson error over the rank-2 matrices F = U diag(1, s, 0) Vᵀ.
+    Raises InvalidInput for fewer than 8 matches or matches in one line.
+    """
+    left, right = as_points(px_left, 2, "px_left"), as_points(px_right, 2, "px_right")
+    if left.shape != right.shape or left.ndim != 2 or len(left) < 8:
+        raise InvalidInput(
+            f"matches have shapes {left.shape} and {right.shape}; expected [N, 2] twice, N >= 8"
+        )
+    T_left, T_right = _normalisation(left), _normalisation(right)
+    x = _homogeneous(left) @ T_left.T
+    y = _homogeneous(right) @ T_right.T
+    equations = (y[:, :, None] * x[:, None, :]).reshape(len(x), 9)
+    *_, vt = np.linalg.svd(equations, full_matrices=len(x) < 9)
+    F = T_right.T @ _refined(vt[-1].reshape(3, 3), x, y) @ T_left
+    fundamental: FloatArray = F / np.linalg.norm(F)
+    return fundamental
+
+
+def sampson_residuals(F: FloatArray, left: FloatArray, right: FloatArray) -> FloatArray:
+    """Signed Sampson distances [N], in the unit of the homogeneous points [N, 3]."""
+    lines_right, lines_left = left @ F.T, right @ F
+    algebraic = (right * lines_right).sum(axis=-1)
+    gradient = np.sqrt((lines_right[:, :2] ** 2).sum(axis=-1) + (lines_left[:, :2] ** 2).sum(axis=-1))
+    residuals: FloatArray = algebraic / gradient
+    return residuals
+
+
+def _refined(F: FloatArray, left: FloatArray, right: FloatArray) -> FloatArray:
+    """The rank-2 matrix near F with the least Sampson error, parametrised by two turns and a ratio."""
+    U, s, Vt = np.linalg.svd(F)
+
+    def matrix(p: FloatArray) -> FloatArray:
+        middle = np.diag([1.0, s[1] / s[0] + p[6], 0.0])
+        product: FloatArray = U @ _turn(p[:3]) @ middle @ _turn(p[3:6]).T @ Vt
+        return product
+
+    def residuals(p: FloatArray) -> FloatArray:
+        return sampson_residuals(matrix(p), left, right)
+
+    return matrix(least_squares(residuals, np.zeros(7), method="lm", xtol=1e-14).x)
+
+
+def _turn(omega: FloatArray) -> FloatArray:
+    rotation: FloatArray = Rotation.from_rotvec(omega).as_matrix()
+    return rotation
+
+
+def _normalisation(points: FloatArray) -> FloatArray:
+    """The similarity that brings points to mean 0 and mean distance √2."""
+    centre = points.mean(axis=0)
+    spread = np.linalg.norm(points - centre, axis=1).mean()
+    _, across = np.linalg.svd(points - centre, compute_uv=False)
+    if not across > DEGENERATE * (1 + np.abs(centre).max()) * np.sqrt(len(points)):
+        raise InvalidInput(
+            "all matches are the same pixel or in one line; expected them spread over the image"
+        )
+    scale = np.sqrt(2) / spread
+    return np.array([[scale, 0, -scale * centre[0]], [0, scale, -scale * centre[1]], [0, 0, 1.0]])
+
+
+def _homogeneous(points: FloatArray) -> FloatArray:
+    return np.column_stack([points, np.ones(len(points))])

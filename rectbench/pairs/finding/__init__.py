@@ -1,0 +1,1 @@
+"""Photographs and calibrations found in a folder."""

@@ -1,0 +1,79 @@
+"""How far from its axis a fisheye lens shows anything: by a mask image, or by the black rim of images."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import reduce
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rectbench.cameras import Camera
+from rectbench.images.reading import Grey
+from rectbench.types import FloatArray
+
+RING_DEG = 1.0
+LOOKED_AT = 200_000
+"""Pixels of an image that are looked at."""
+LEAST_PIXELS = 100
+"""Pixels of a ring that tell anything."""
+LEAST_DARK_DEG = 5.0
+"""What must be dark beyond an image circle: a dark floor is no rim."""
+LIT_SHARE = 90
+"""Percentile of a ring that is compared: a lamp's glare leaves the circle, and is to count for little."""
+LEAST_CONTRAST = 24.0
+"""Grey levels between the picture and its rim."""
+FADED = 0.25
+"""Of that contrast, what a ring must have to belong to the picture."""
+
+
+def angle_of_mask_deg(camera: Camera, mask: Grey) -> float | None:
+    """Angle from the axis, degrees, up to which most pixels of a mask [H, W] are set; None where all are."""
+    rings = _rings(camera)
+    unset = [float((_at(mask, ring) == 0).mean()) if len(ring) else 0.0 for ring in rings]
+    beyond = [i for i, share in enumerate(unset) if share > 0.5]
+    return beyond[0] * RING_DEG if beyond and beyond[0] > 0 else None
+
+
+def angle_of_rim_deg(camera: Camera, images: Sequence[Grey]) -> float | None:
+    """Angle from the axis, degrees, beyond which images [H, W] of a camera are dark; None for no black rim.
+
+    Dark are the rings about the axis from there to the corners, none of them less than 5 degrees, and all
+    images count at once, so that a dark scene is no rim while another is light.
+    """
+    brightest = reduce(np.maximum, images)
+    rings = _rings(camera)
+    if len(rings) * RING_DEG < 2 * LEAST_DARK_DEG:
+        return None
+    levels = np.array(
+        [np.percentile(_at(brightest, ring), LIT_SHARE) if len(ring) else np.nan for ring in rings]
+    )
+    told = levels[np.isfinite(levels)]
+    rim, inside = float(told[-1]), float(np.median(told[: len(told) // 2]))
+    lit = np.flatnonzero(levels > rim + FADED * (inside - rim))
+    if inside - rim < LEAST_CONTRAST or (len(rings) - 1 - lit[-1]) * RING_DEG < LEAST_DARK_DEG:
+        return None
+    return float(lit[-1] + 1) * RING_DEG
+
+
+def _rings(camera: Camera) -> list[NDArray[np.intp]]:
+    """Pixels [N, 2] (row, column) of each ring of one degree about the axis, out to the last that tells.
+
+    Of a large image every n-th pixel each way. A ring within that has too few pixels tells nothing, and is
+    empty.
+    """
+    step = max(1, round((camera.width * camera.height / LOOKED_AT) ** 0.5))
+    grid = camera.pixel_grid()[::step, ::step].reshape(-1, 2)
+    rays, seen = camera.unproject(grid)
+    angle: FloatArray = np.degrees(np.arctan2(np.hypot(rays[:, 0], rays[:, 1]), rays[:, 2]))
+    index = np.floor(angle[seen] / RING_DEG).astype(np.intp)
+    places = grid[seen][np.argsort(index, kind="stable")][:, ::-1].astype(np.intp)
+    rings = np.split(places, np.cumsum(np.bincount(index))[:-1])
+    least = LEAST_PIXELS / step**2
+    while rings and len(rings[-1]) < least:
+        rings.pop()
+    return [ring if len(ring) >= least else ring[:0] for ring in rings]
+
+
+def _at(image: Grey, ring: NDArray[np.intp]) -> Grey:
+    return image[ring[:, 0], ring[:, 1]]

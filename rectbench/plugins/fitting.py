@@ -1,0 +1,64 @@
+"""From a method's name and options to a checked rectification."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from pydantic import ValidationError
+
+from rectbench.errors import InvalidInput, InvalidResult, UnknownName
+from rectbench.plugins.loading import Plugin
+from rectbench.plugins.rectifier import Options, Problem
+from rectbench.warps import Rectification, Warp
+from rectbench.warps.rectification import in_frame
+
+
+def checked_options(plugin: Plugin, given: Mapping[str, Any]) -> Options:
+    """The method's options, those not given at their defaults.
+
+    Raises UnknownName for one the method has not, InvalidInput for a value it cannot have.
+    """
+    options: type[Options] = plugin.value.Options
+    try:
+        return options.model_validate(dict(given))
+    except ValidationError as error:
+        fault = error.errors(include_url=False)[0]
+        name = ".".join(str(part) for part in fault["loc"])
+        if fault["type"] == "extra_forbidden":
+            raise UnknownName(f"option of {plugin.name}", name, options.model_fields) from None
+        expected = fault["msg"].removeprefix("Input should be ").removeprefix("Value error, ")
+        raise InvalidInput(
+            f"{plugin.name}: option {name} is {fault['input']!r}; expected {expected}"
+        ) from None
+
+
+def fit(plugin: Plugin, problem: Problem, options: Options) -> Rectification:
+    """The method's answer, checked; raises InvalidResult for one of the wrong type, shape or values."""
+    rectification = plugin.value.fit(problem, options)
+    check_result(plugin.name, rectification, problem)
+    return rectification  # type: ignore[no-any-return]  # a plugin's own word, checked the line before
+
+
+def check_result(method: str, result: object, problem: Problem) -> None:
+    """Raise InvalidResult unless `result` is a rectification of the problem's rig with usable numbers."""
+    if not isinstance(result, Rectification):
+        raise InvalidResult(f"{method} returned {type(result).__name__}; expected a Rectification")
+    sides = (
+        ("left", problem.rig.left, problem.pixels_left),
+        ("right", problem.rig.right, problem.pixels_right),
+    )
+    for side, camera, pixels in sides:
+        warp = getattr(result, side)
+        if not isinstance(warp, Warp):
+            raise InvalidResult(f"{method}: the {side} warp is {type(warp).__name__}; expected a Warp")
+        if warp.source != camera:
+            raise InvalidResult(f"{method}: the {side} warp starts from another camera than the rig's")
+        mapped = np.asarray(warp.forward(pixels))
+        if mapped.shape != pixels.shape:
+            raise InvalidResult(f"{method}: {side}.forward gives {mapped.shape} for {pixels.shape} pixels")
+        if np.isinf(mapped).any() or not np.isfinite(mapped).any():
+            raise InvalidResult(f"{method}: {side}.forward gives no finite pixel, or an infinite one")
+        if not in_frame(mapped, result.size).any():
+            raise InvalidResult(f"{method}: no {side} pixel lands in the rectified image: it is empty")

@@ -1,0 +1,128 @@
+"""What a rectifier is: typed options, a problem in, a rectification out."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, ClassVar
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field
+
+from rectbench.cameras import Camera
+from rectbench.errors import InvalidInput
+from rectbench.rigs import Rig
+from rectbench.types import FloatArray, Images, Matches
+from rectbench.warps.frame import rectifying_rotations
+from rectbench.warps.rectification import Rectification
+from rectbench.warps.targets import ANGLES
+from rectbench.warps.view.sampling import evaluation_pixels
+from rectbench.warps.warp import Warp
+
+
+class Options(BaseModel):
+    """Base of a rectifier's options: typed, checked, immutable; no unknown ones."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+
+def option(default: Any, description: str, **limits: Any) -> Any:
+    """One option: its default, what it does, and its limits (`ge`, `gt`, `le`, `lt`)."""
+    return Field(default, description=description, **limits)
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """All that a rectifier may know; never the truth."""
+
+    rig: Rig
+    """The rig as calibrated or estimated, which may be off."""
+    pixels_left: FloatArray
+    """[N, 2] source pixels whose distortion counts."""
+    pixels_right: FloatArray
+    """[N, 2]"""
+    known_matches: Matches | None = None
+    """Corresponding pixels, with their noise, where somebody found some."""
+    images: Images | None = None
+    seed: int = 0
+
+    @cached_property
+    def matches(self) -> Matches:
+        """The known matches; without any, exact ones made from the believed pose."""
+        return self.known_matches if self.known_matches is not None else matches_from_pose(self.rig)
+
+    def angle_warps(self) -> tuple[Warp, Warp]:
+        """Both cameras' maps from pixels to (γ, β) in radians: what a row-keeping method starts from."""
+        R_rect_left, R_rect_right = rectifying_rotations(self.rig)
+        return Warp(self.rig.left, R_rect_left, ANGLES), Warp(self.rig.right, R_rect_right, ANGLES)
+
+
+def pose_problem(
+    rig: Rig,
+    *,
+    pixels: FloatArray | None = None,
+    matches: Matches | None = None,
+    images: Images | None = None,
+    seed: int = 0,
+) -> Problem:
+    """The problem for a rig; what is left out is the usual: evaluation pixels, matches made from the pose.
+
+    Of given pixels each image uses those its lens sees; InvalidInput where it sees none.
+    """
+    return Problem(
+        rig=rig,
+        pixels_left=_pixels_of(rig.left, pixels, "left"),
+        pixels_right=_pixels_of(rig.right, pixels, "right"),
+        known_matches=matches,
+        images=images,
+        seed=seed,
+    )
+
+
+def _pixels_of(camera: Camera, pixels: FloatArray | None, side: str) -> FloatArray:
+    """The given pixels that the lens sees, or the evaluation grid."""
+    if pixels is None:
+        return evaluation_pixels(camera)
+    seen = pixels[camera.unproject(pixels)[1]]
+    if not len(seen):
+        raise InvalidInput(
+            f"the {side} lens sees none of the {len(pixels)} pixels; expected pixels of the image"
+        )
+    return seen
+
+
+NEAR_IN_BASELINES, FAR_IN_BASELINES = 5.0, 200.0
+
+
+def matches_from_pose(rig: Rig, count: int = 2000) -> Matches:
+    """Where points at 5 to 200 baselines would be seen by the believed rig: noise-free, both images.
+
+    Methods that know no pose but only matches can so run on a calibrated rig without images.
+    """
+    pixels = evaluation_pixels(rig.left, count)
+    rays, _ = rig.left.unproject(pixels)
+    # A fixed low-discrepancy sequence (golden ratio): depths spread evenly, without a random stream.
+    share = (np.arange(len(pixels)) * 0.6180339887498949) % 1.0
+    depths = rig.baseline_m / (share / NEAR_IN_BASELINES + (1 - share) / FAR_IN_BASELINES)
+    points_right = rig.right_from_left(rays * depths[:, None])
+    pixels_right, ok = rig.right.project(points_right)
+    seen = ok & rig.right.contains(pixels_right)
+    return Matches(pixels[seen], pixels_right[seen])
+
+
+class Rectifier(ABC):
+    """A stereo rectification method: one file, one class.
+
+    The class's docstring says in its first line what the method is. `needs` says what it works from:
+    "pose" for a calibrated method, "matches" for one that finds the geometry by itself.
+    """
+
+    name: ClassVar[str]
+    references: ClassVar[tuple[str, ...]] = ()
+    needs: ClassVar[frozenset[str]] = frozenset({"pose"})
+    Options: ClassVar[type[Options]] = Options
+
+    @abstractmethod
+    def fit(self, problem: Problem, options: Any) -> Rectification:
+        """The rectification of the rig; raises Unsupported, with the reason, where there is none."""

@@ -1,0 +1,99 @@
+"""Random starts: how far above the default start's L each of them ends."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rectbench.reporting.run_folder import Result, Run
+from rectbench.reporting.style import COLUMN_INCHES, INK, PAGE_INCHES, looks, plain_log_ticks
+from rectbench.reporting.tables.labels import pair_labels
+from rectbench.reporting.tables.numbers import decade
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+ENERGY = "distortion_native"
+"""What the fit minimises, as a column."""
+SAME_MINIMUM = 0.01
+"""Ending at most this much above the default start's L, relatively, is ending in the same minimum."""
+_FLOOR = 1e-6
+
+
+@dataclass(frozen=True)
+class Starts:
+    """A pair's random starts: L over the default start's L, and how many gave no rectification."""
+
+    label: str
+    ratios: tuple[float, ...]
+    failed: int
+
+    @property
+    def count(self) -> int:
+        """All starts, those that failed included."""
+        return len(self.ratios) + self.failed
+
+    @property
+    def same(self) -> int:
+        """How many end in the default start's minimum, or below it."""
+        return sum(ratio <= 1 + SAME_MINIMUM for ratio in self.ratios)
+
+
+def start_study(part: Run, run: Run) -> tuple[Starts, ...]:
+    """The random starts of a part by pair, beside the same pair's default start anywhere in the run."""
+    defaults = {_cell(r): r for r in run.results if r.metrics.get(ENERGY) and not r.options}
+    studied = [r for r in part.results if r.is_random_start and _cell(r) in defaults]
+    return tuple(
+        _starts(label, [r for r in studied if r.place == place], defaults)
+        for place, label in pair_labels(part).items()
+        if any(r.place == place for r in studied)
+    )
+
+
+def study_method(part: Run) -> str:
+    """The method under study."""
+    return next(str(r.row["method"]) for r in part.results if r.is_random_start)
+
+
+def _cell(result: Result) -> tuple[object, ...]:
+    return *result.pair, result.pose, result.row["method"]
+
+
+def _starts(label: str, results: list[Result], defaults: Mapping[tuple[object, ...], Result]) -> Starts:
+    measured = [r for r in results if r.ok and ENERGY in r.metrics]
+    ratios = sorted(r.metrics[ENERGY] / defaults[_cell(r)].metrics[ENERGY] for r in measured)
+    return Starts(label, tuple(ratios), len(results) - len(ratios))
+
+
+def draw_starts(study: tuple[Starts, ...], method: str) -> Figure:
+    """A column of points a pair, on a logarithmic axis of the excess over the default start's L."""
+    from matplotlib.figure import Figure
+
+    width = min(PAGE_INCHES, max(COLUMN_INCHES, 0.9 + 1.1 * len(study)))
+    figure = Figure(figsize=(width, 2.3), layout="constrained")
+    ax = figure.subplots()
+    colour, marker = looks([method])[method]
+    for x, starts in enumerate(study):
+        excess = np.maximum(np.array(starts.ratios) - 1, _FLOOR)
+        across = x + 0.5 * (np.arange(len(excess)) / max(1, len(excess) - 1) - 0.5)
+        ax.plot(across, excess, marker, color=colour, markersize=3, markeredgewidth=0, clip_on=False)
+        words = f"{starts.same} of {starts.count}" + (f", {starts.failed} failed" if starts.failed else "")
+        ax.text(x, 1.02, words, transform=ax.get_xaxis_transform(), ha="center", va="bottom", size=6.5)
+    ax.set_yscale("log")
+    largest = max((ratio - 1 for starts in study for ratio in starts.ratios), default=1.0)
+    ax.set_ylim(_FLOOR, max(1.0, 3 * largest))
+    plain_log_ticks(ax.yaxis)
+    ax.yaxis.set_major_formatter(lambda value, _: ("≤ " if value < 2 * _FLOOR else "") + decade(value))
+    ax.axhspan(_FLOOR, SAME_MINIMUM, color="#e8f3ec", zorder=0)
+    ax.axhline(SAME_MINIMUM, color=INK, linewidth=0.6, linestyle=(0, (4, 2)), zorder=1)
+    at_edge = ax.get_yaxis_transform()
+    ax.text(0.995, SAME_MINIMUM / 1.5, "same minimum", transform=at_edge, ha="right", va="top", size=6)
+    ax.set_xlim(-0.5, len(study) - 0.5)
+    ax.set_xticks(range(len(study)), [starts.label for starts in study])
+    ax.tick_params(axis="x", length=0)
+    ax.set_ylabel("L over the default start's, less 1")
+    ax.grid(axis="y")
+    return figure

@@ -1,0 +1,148 @@
+"""The page: everything of a run in one HTML file that needs no network."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from rectbench.reporting.columns import Column, column
+from rectbench.reporting.figures import EXTENSIONS, Drawn
+from rectbench.reporting.page.run_facts import (
+    Fact,
+    description,
+    full_json,
+    part_title,
+    reproduce_command,
+    run_facts,
+    title,
+)
+from rectbench.reporting.run_folder import Run
+from rectbench.reporting.style import looks
+from rectbench.reporting.tables.table import SPELLINGS, Entry, Table
+from rectbench.reporting.tables.tabulation import methods_part, slug
+
+TOPICS = (
+    ("ranking", "Ranking", ("main",), ()),
+    ("charts", "Charts", (), ("bars", "scatter")),
+    ("poses", "Poses", ("pose",), ()),
+    ("rows", "Row error", ("rows",), ()),
+    ("distortion", "Distortion", ("distortion",), ()),
+    ("pictures", "Pictures", (), ("pairs", "maps", "squares")),
+    ("energy", "Energy", ("energy",), ("energy",)),
+    ("starts", "Random starts", ("starts",), ("starts",)),
+    ("reconstruction", "Reconstruction", ("depth",), ("clouds",)),
+    ("time", "Time", ("time",), ("timing",)),
+    ("pairs", "Every pair", ("pair",), ()),
+    ("photographs", "Photographs", ("photographs", "left-out"), ()),
+)
+"""What a part of the page is divided into: name, title, kinds of tables, kinds of figures."""
+
+
+@dataclass(frozen=True)
+class Topic:
+    """A section of a part: its tables and its figures; `anchor` is where links lead."""
+
+    name: str
+    anchor: str
+    title: str
+    tables: list[Table]
+    figures: list[Drawn]
+
+
+@dataclass(frozen=True)
+class Part:
+    """A part of the report; that of a report without parts has no name and no title."""
+
+    name: str
+    anchor: str
+    title: str
+    topics: list[Topic]
+
+
+@dataclass(frozen=True)
+class Page:
+    """What the template shows."""
+
+    title: str
+    description: str
+    report: str
+    cells: int
+    failed: int
+    scenes: tuple[str, ...]
+    scenes_called: str
+    rigs: tuple[str, ...]
+    methods: tuple[str, ...]
+    poses: tuple[str, ...]
+    verdicts: Table | None
+    measurements: Table | None
+    parts: list[Part]
+    failures: Table | None
+    tables: list[Table]
+    colours: dict[str, str]
+    glossary: list[Column]
+    facts: list[Fact]
+    full_json: str
+    reproduce: str
+    extensions: tuple[str, ...] = EXTENSIONS
+    spellings: tuple[str, ...] = tuple(SPELLINGS)
+
+
+def render_page(run: Run, tables: Sequence[Table], drawn: Sequence[Drawn]) -> str:
+    """index.html as text."""
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+
+    environment = Environment(
+        loader=PackageLoader("rectbench.reporting"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.globals["sort_value"] = _sort_value
+    of_kind = {table.kind: table for table in tables}
+    page = Page(
+        title=title(run),
+        description=description(run),
+        report=run.report,
+        cells=len(run.results),
+        failed=len(run.failures),
+        scenes=run.scenes,
+        scenes_called="pairs" if run.is_of_photographs else "scenes",
+        rigs=run.rigs,
+        methods=_methods(run),
+        poses=run.poses,
+        verdicts=of_kind.get("claims"),
+        measurements=of_kind.get("measurements"),
+        parts=[_part(part, tables, drawn) for part in run.parts],
+        failures=of_kind.get("failures"),
+        tables=list(tables),
+        colours={method: colour for method, (colour, _) in looks(run.methods).items()},
+        glossary=[column(key) for key in run.metrics],
+        facts=run_facts(run),
+        full_json=full_json(run),
+        reproduce=reproduce_command(run),
+    )
+    return environment.get_template("index.html.j2").render(page=page)
+
+
+def _methods(run: Run) -> tuple[str, ...]:
+    parts = [methods for part in run.parts if (methods := methods_part(part))]
+    return tuple(dict.fromkeys(method for part in parts for method in part.methods))
+
+
+def _part(part: Run, tables: Sequence[Table], drawn: Sequence[Drawn]) -> Part:
+    topics, anchor = [], slug("part", part.group) if part.group else ""
+    for name, heading, of_tables, of_figures in TOPICS:
+        mine = [t for t in tables if t.part == part.group and t.kind in of_tables]
+        figures = [d for d in drawn if d.plan.part == part.group and d.plan.kind in of_figures]
+        if mine or figures:
+            topics.append(Topic(name, slug(anchor, name), heading, mine, figures))
+    return Part(part.group, anchor, part_title(part), topics)
+
+
+def _sort_value(entry: Entry) -> str:
+    """What the page's script sorts by; nothing for an entry without a value, which sorts last."""
+    if isinstance(entry.value, float) and math.isinf(entry.value):
+        return "1e308" if entry.value > 0 else "-1e308"
+    return entry.stored

@@ -1,0 +1,82 @@
+"""What a run of photographs was made from, and what of its folder was left out."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from rectbench.reporting.columns import column
+from rectbench.reporting.run_folder import Run
+from rectbench.reporting.tables.labels import one_line, pair_labels
+from rectbench.reporting.tables.numbers import MISSING
+from rectbench.reporting.tables.table import Heading, Section, Table, number, words
+
+COUNTED = ("pose_inliers", "row_error_features_matches", "row_error_board_points")
+
+TROUBLE = ("contradiction", "no_features")
+"""What the cells of a pair note about its images and calibration."""
+
+
+def photograph_tables(run: Run) -> Iterator[Table]:
+    """The pairs with their files, then the files of the folder that no pair has; none for rendered pairs."""
+    found = run.facts.get("photographs")
+    if not isinstance(found, Mapping):
+        return
+    yield _pairs_table(run, found)
+    if found.get("left_out"):
+        yield _left_out_table(found)
+
+
+def _pairs_table(run: Run, found: Mapping[str, Any]) -> Table:
+    files = {(pair["name"], pair["rig"]): pair for pair in found["pairs"]}
+    remarks = found.get("remarks", {})
+    keys = [key for key in COUNTED if key in run.metrics]
+    rows = []
+    for place, label in pair_labels(run).items():
+        results = run.select(place=place)
+        told = {name: str(text) for r in results for name, text in r.notes.items()}
+        # A method that shows less of the view has fewer of them to be measured by.
+        counts = [max((r.metrics[key] for r in results if key in r.metrics), default=None) for key in keys]
+        pair = files[place[0], place[1]]
+        said = [*(told[name] for name in TROUBLE if name in told), *remarks.get(place[1], [])]
+        rows.append(
+            (
+                words(one_line(label)),
+                words(pair["left"]),
+                words(pair["right"]),
+                *(number(count, column(key)) for count, key in zip(counts, keys, strict=True)),
+                words(told.get("board", MISSING)),
+                words("; ".join(said)),
+            )
+        )
+    return Table(
+        kind="photographs",
+        name="photographs",
+        title="Photographs",
+        caption="What is under the numbers: the images, what was found in them to measure with, and what was "
+        "assumed about their calibration.",
+        headings=(
+            Heading("pair", "pair", numeric=False),
+            Heading("left", "left", numeric=False),
+            Heading("right", "right", numeric=False),
+            *(Heading(column(key).heading, key, meaning=column(key).meaning) for key in keys),
+            Heading("board", "board", numeric=False),
+            Heading("remarks", "remarks", numeric=False, wraps=True),
+        ),
+        sections=(Section("", tuple(rows)),),
+    )
+
+
+def _left_out_table(found: Mapping[str, Any]) -> Table:
+    rows = tuple((words(out["path"]), words(out["reason"])) for out in found["left_out"])
+    return Table(
+        kind="left-out",
+        name="left-out",
+        title="Left out",
+        caption="Images and calibrations in the folder that no pair of the report has.",
+        headings=(
+            Heading("file", "file", numeric=False),
+            Heading("why", "why", numeric=False, wraps=True),
+        ),
+        sections=(Section("", rows),),
+    )

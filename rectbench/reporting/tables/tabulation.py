@@ -1,0 +1,325 @@
+"""The tables every run has: one a pose, one a pair of scene and rig, one by protocol, one of failures.
+
+A report of several parts has them for each part, under names that hold the part's.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from itertools import product
+from typing import Any
+
+from rectbench.reporting.columns import (
+    ALL_PIXELS_KEYS,
+    DISTORTION_KEYS,
+    MAIN_KEYS,
+    PHOTOGRAPH_KEYS,
+    RANKING_KEY,
+    Column,
+    column,
+)
+from rectbench.reporting.page.run_facts import part_title, wanted_kinds
+from rectbench.reporting.run_folder import Result, Run
+from rectbench.reporting.tables.numbers import MISSING, three_digits
+from rectbench.reporting.tables.summaries import Summary, ranked, summarise
+from rectbench.reporting.tables.table import Entry, Heading, Section, Table, number, with_best
+
+OK_HEADING = Heading("ok", "ok", meaning="Cells measured of cells planned.")
+NOT_OK_HEADING = Heading("not ok", "not_ok", numeric=False, meaning="How the other cells ended.")
+
+PARTIAL = (
+    "A method with failed cells is averaged over its measured cells alone. These are other pairs than its "
+    "neighbours', so that its averages win no column"
+)
+
+
+def slug(*parts: str) -> str:
+    """A file's stem from names: lower case, hyphens, nothing a shell or LaTeX minds."""
+    return "-".join(filter(None, (re.sub(r"[^a-z0-9]+", "-", part.lower()).strip("-") for part in parts)))
+
+
+def named(run: Run, stem: str, *parts: str) -> str:
+    """A file's stem that holds the part's name, once."""
+    return slug(stem, "" if run.group == stem else run.group, *parts)
+
+
+def main_tables(run: Run) -> list[Table]:
+    """Methods by key metrics, averaged over every pair; one table a part and pose."""
+    return [
+        _main_table(methods, pose)
+        for part in run.parts
+        if (methods := methods_part(part)) and is_ranked(methods)
+        for pose in methods.poses
+    ]
+
+
+def methods_part(part: Run) -> Run | None:
+    """A part without the random starts that are studied in it: these are no methods to compare."""
+    if "starts" not in wanted_kinds(part):
+        return part
+    others = [r for r in part.results if not r.is_random_start]
+    return part.only(others) if others else None
+
+
+def is_ranked(run: Run) -> bool:
+    """Whether there is anything to rank methods by, or nothing at all to show but their failure."""
+    return not run.group or RANKING_KEY in run.metrics or not run.metrics
+
+
+def _main_table(run: Run, pose: str) -> Table:
+    results = run.select(pose=pose)
+    keys = [key for key in (PHOTOGRAPH_KEYS if run.is_of_photographs else MAIN_KEYS) if key in run.metrics]
+    methods = [m for m in run.methods if any(r.method == m for r in results)]
+    summaries = ranked(summarise(m, [r for r in results if r.method == m], keys) for m in methods)
+    failing = any(not s.complete for s in summaries)
+    headings = [
+        Heading("rank", "rank", meaning=f"By {column(RANKING_KEY).heading}; failures count before it.")
+    ]
+    headings += [Heading("method", "method", numeric=False), OK_HEADING]
+    headings += [heading(key) for key in keys] + [NOT_OK_HEADING] * failing
+    ranks = [
+        Entry(str(i), i) if s.averages.get(RANKING_KEY) and s.ok else Entry(MISSING)
+        for i, s in enumerate(summaries, 1)
+    ]
+    fields = [_averaged_field(summaries, key) for key in keys]
+    rows = tuple(
+        (
+            ranks[i],
+            Entry(s.method, s.method),
+            _ok_entry(s),
+            *(f[i] for f in fields),
+            *[_not_ok_entry(s, results)] * failing,
+        )
+        for i, s in enumerate(summaries)
+    )
+    pairs = _photographs_text(results) if run.is_of_photographs else _pairs_text(results)
+    caption = f"Averages over {pairs}, ranked by log distortion."
+    return Table(
+        kind="main",
+        part=run.group,
+        name=named(run, "main", pose),
+        title=titled(run, f"Methods under the {pose} pose"),
+        caption=caption,
+        headings=tuple(headings),
+        sections=(Section("", rows),),
+        notes=(f"{PARTIAL}, and it ranks last.",) if failing else (),
+    )
+
+
+def distortion_table(run: Run) -> Table:
+    """Distortion under each protocol, a section a rig, averaged over that rig's pairs."""
+    results = run.select(pose=run.geometric_pose)
+    sections = {
+        f"{rig}, {motion}" if len(run.motions) > 1 else rig: run.select(results, rig=rig, motion=motion)
+        for rig, motion in product(run.rigs, run.motions)
+    }
+    keys = (*DISTORTION_KEYS, *ALL_PIXELS_KEYS) if run.group else DISTORTION_KEYS
+    table = methods_table(run, keys, sections)
+    return replace(
+        table,
+        kind="distortion",
+        name=named(run, "distortion"),
+        title=titled(run, "Distortion by protocol"),
+        caption=(
+            f"Averages over the pairs of each rig, {run.geometric_pose} pose. Native: each method's own "
+            "scale; rescaled: the one scale best for L; stretched: the best scales of width and height."
+        ),
+    )
+
+
+def methods_table(run: Run, keys: Sequence[str], sections: Mapping[str, Sequence[Result]]) -> Table:
+    """Averages of the `keys` that the run has, a row a method, in a section of results each."""
+    keys = [key for key in keys if key in run.metrics]
+    failing = any(not r.ok for results in sections.values() for r in results)
+    return Table(
+        name="",
+        title="",
+        caption="",
+        headings=(
+            Heading("method", "method", numeric=False),
+            OK_HEADING,
+            *(heading(key) for key in keys),
+            *[NOT_OK_HEADING] * failing,
+        ),
+        sections=tuple(
+            Section(title, _method_rows(run, keys, results, failing))
+            for title, results in sections.items()
+            if results
+        ),
+        notes=(f"{PARTIAL}.",) if failing else (),
+        part=run.group,
+    )
+
+
+def _method_rows(
+    run: Run, keys: Sequence[str], results: Sequence[Result], failing: bool
+) -> tuple[tuple[Entry, ...], ...]:
+    summaries = [
+        summarise(m, [r for r in results if r.method == m], keys)
+        for m in run.methods
+        if any(r.method == m for r in results)
+    ]
+    fields = [_averaged_field(summaries, key) for key in keys]
+    return tuple(
+        (
+            Entry(s.method, s.method),
+            _ok_entry(s),
+            *(f[i] for f in fields),
+            *[_not_ok_entry(s, results)] * failing,
+        )
+        for i, s in enumerate(summaries)
+    )
+
+
+def titled(run: Run, title: str) -> str:
+    """A table's title, with the part's before it."""
+    part = part_title(run)
+    return f"{part}: {title[0].lower()}{title[1:]}" if part else title
+
+
+def pair_tables(run: Run) -> list[Table]:
+    """Every metric of every method, one table a (scene, rig), one section a pose (motion, seed)."""
+    tables = []
+    for rig, scene in product(run.rigs, run.scenes):
+        results = run.select(scene=scene, rig=rig)
+        if results:
+            tables.append(_pair_table(run, scene, rig, results))
+    return tables
+
+
+def _pair_table(run: Run, scene: str, rig: str, results: Sequence[Result]) -> Table:
+    methods = [m for m in run.methods if any(r.method == m for r in results)]
+    sections = []
+    for motion, pose, seed in dict.fromkeys((r.motion, r.pose, r.seed) for r in results):
+        cells = {r.method: r for r in run.select(results, motion=motion, pose=pose, seed=seed)}
+        parts = [f"{pose} pose"]
+        parts += [motion] if len(run.motions) > 1 else []
+        parts += [f"seed {seed}"] if len({r.seed for r in run.results}) > 1 else []
+        present = [cells.get(m) for m in methods]
+        status = (Entry("status", "status"), *(_status_entry(r) for r in present))
+        rows = [_metric_row(column(key), present) for key in run.metrics]
+        notes = dict.fromkeys(name for r in present if r is not None for name in r.notes)
+        rows += [_note_row(name, present) for name in notes]
+        sections.append(Section(", ".join(parts), (status, *rows)))
+    return Table(
+        kind="pair",
+        part=run.group,
+        name=named(run, "pair", scene, rig),
+        title=f"{scene} seen by {rig}",
+        caption="Every metric of every method; the best of each row is bold.",
+        headings=(
+            Heading("metric", "metric", numeric=False),
+            *(Heading(method, method) for method in methods),
+        ),
+        sections=tuple(sections),
+    )
+
+
+def _metric_row(shown_as: Column, present: Sequence[Result | None]) -> tuple[Entry, ...]:
+    entries = [
+        number(r.metrics.get(shown_as.key), shown_as) if r is not None and r.ok else Entry(MISSING)
+        for r in present
+    ]
+    head = Entry(_head_text(shown_as), shown_as.key)
+    return head, *with_best(entries, shown_as, [True] * len(entries))
+
+
+def _note_row(name: str, present: Sequence[Result | None]) -> tuple[Entry, ...]:
+    """What methods say of their own answers: focal lengths, energies, warnings."""
+    values = [None if r is None else r.notes.get(name) for r in present]
+    return Entry(f"note: {name.replace('_', ' ')}", f"note:{name}"), *map(_note_entry, values)
+
+
+def _note_entry(value: Any) -> Entry:
+    if isinstance(value, int | float) and math.isfinite(value):
+        return Entry(three_digits(value), float(value))
+    return Entry(MISSING) if value is None else Entry(str(value), str(value))
+
+
+def _status_entry(result: Result | None) -> Entry:
+    if result is None:
+        return Entry(MISSING)
+    return Entry(result.status, result.status, failed=not result.ok)
+
+
+def failures_table(run: Run) -> Table:
+    """Every cell without a measurement, its status and the reason given."""
+    names: tuple[str, ...] = ("scene", "rig", "motion", "pose", "method", "seed", "status", "reason")
+    if any(r.group for r in run.results):
+        names = ("group", *names)
+    rows = tuple(
+        tuple(
+            Entry(str(value) or MISSING, value, failed=name == "status")
+            for name, value in ((name, getattr(r, name)) for name in names)
+        )
+        for r in run.failures
+    )
+    return Table(
+        kind="failures",
+        name="failures",
+        title="Cells without a measurement",
+        caption=f"{len(rows)} of {counted(len(run.results), 'cell')}.",
+        headings=tuple(Heading(n, n, numeric=n == "seed", wraps=n == "reason") for n in names),
+        sections=(Section("", rows),),
+    )
+
+
+def heading(key: str) -> Heading:
+    shown_as = column(key)
+    return Heading(_head_text(shown_as), key, meaning=shown_as.meaning)
+
+
+def _head_text(shown_as: Column) -> str:
+    arrow = {"lower": "\u00a0↓", "higher": "\u00a0↑", None: ""}[shown_as.better]
+    return shown_as.full_heading + arrow
+
+
+def _ok_entry(summary: Summary) -> Entry:
+    text = f"{summary.ok}/{summary.cells}"
+    return Entry(text, text, failed=not summary.complete)
+
+
+def _not_ok_entry(summary: Summary, results: Sequence[Result]) -> Entry:
+    ended = [r.status for r in results if r.method == summary.method and not r.ok]
+    text = ", ".join(f"{ended.count(status)} {status}" for status in dict.fromkeys(ended))
+    return Entry(text or MISSING, text, failed=bool(text))
+
+
+def _averaged_field(summaries: Sequence[Summary], key: str) -> list[Entry]:
+    """One metric down the methods. Averages over fewer cells than planned compete for no prize."""
+    shown_as = column(key)
+    entries = []
+    for summary in summaries:
+        averaged = summary.averages[key]
+        short = averaged.count < summary.ok
+        entries.append(
+            number(averaged.value, shown_as, f" ({averaged.count}/{summary.cells})" if short else "")
+        )
+    eligible = [s.complete and s.averages[key].count == s.cells for s in summaries]
+    return with_best(entries, shown_as, eligible)
+
+
+def _pairs_text(results: Sequence[Result]) -> str:
+    """How many pairs of which grid, times the seeds where each pair has them all."""
+    pairs, places, seeds = (len({getattr(r, of) for r in results}) for of in ("pair", "place", "seed"))
+    if seeds > 1 and pairs == places * seeds:
+        return f"{counted(places, 'pair')} × {seeds} seeds ({_grid_text(results, ('motion',))})"
+    return f"{counted(pairs, 'pair')} ({_grid_text(results, ('motion', 'seed'))})"
+
+
+def _photographs_text(results: Sequence[Result]) -> str:
+    """How many pairs of how many rigs."""
+    pairs, rigs = (len({getattr(r, of) for r in results}) for of in ("pair", "rig"))
+    return f"{counted(pairs, 'pair')} of photographs ({counted(rigs, 'rig')})"
+
+
+def _grid_text(results: Sequence[Result], beside: Sequence[str]) -> str:
+    counts = {name: len({getattr(r, name) for r in results}) for name in ("scene", "rig", *beside)}
+    return ", ".join(counted(n, name) for name, n in counts.items() if n > 1 or name not in beside)
+
+
+def counted(n: int, noun: str) -> str:
+    return f"{n} {noun}{'' if n == 1 else 's'}"

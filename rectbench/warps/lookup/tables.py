@@ -1,0 +1,78 @@
+"""Lookup tables for `cv2.remap`: for each rectified pixel, where to read in the source image."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rectbench import llvm
+from rectbench.formulas.arrays import drjit_namespace, namespaced, opaque
+from rectbench.types import BoolArray, FloatArray
+from rectbench.warps.warp import Warp, rotated_back
+
+OUTSIDE = -16.0
+"""Table entry of a rectified pixel whose ray the lens cannot see.
+
+Beyond the support of every interpolation of `cv2.remap`, so that it reads the border colour; not
+NaN, which bilinear `remap` of float images would hand on.
+"""
+
+FloatMap = NDArray[np.float32]
+
+
+def lookup_table(warp: Warp, size: tuple[int, int]) -> tuple[FloatMap, FloatMap]:
+    """(map_x, map_y) [height, width] float32, source pixels, for a rectified image of `size`."""
+    columns, rows = warp.target.axis_tables(np.arange(size[0], dtype=float), np.arange(size[1], dtype=float))
+    fill = _fill_compiled if llvm.available() else _fill_with_numpy
+    return fill(warp, columns, rows)
+
+
+def reads_source(map_x: FloatMap, map_y: FloatMap, size: tuple[int, int]) -> BoolArray:
+    """Mask of table entries that read nothing but pixels of a source image of `size`."""
+    w, h = size
+    mask: BoolArray = (map_x >= 0) & (map_x <= w - 1) & (map_y >= 0) & (map_y <= h - 1)
+    return mask
+
+
+def _source_pixel(warp: Warp, c: Any, column: Any, row: Any, xp: Any) -> tuple[Any, Any]:
+    x, y, z, ok = warp.target.ray_formula(c.target, column, row, xp)
+    u, v, seen = warp.source.project_formula(c.source, *rotated_back(c.R, x, y, z), xp)
+    known = ok & seen
+    return xp.where(known, u, OUTSIDE), xp.where(known, v, OUTSIDE)
+
+
+def _fill_with_numpy(
+    warp: Warp, columns: tuple[FloatArray, ...], rows: tuple[FloatArray, ...]
+) -> tuple[FloatMap, FloatMap]:
+    c: SimpleNamespace = namespaced(warp.constants)
+    along = tuple(values[None, :] for values in columns)
+    with np.errstate(all="ignore"):
+        maps = _source_pixel(warp, c, along, tuple(values[:, None] for values in rows), np)
+    shape = (rows[0].size, columns[0].size)
+    return np.broadcast_to(maps[0], shape).astype(np.float32), np.broadcast_to(maps[1], shape).astype(
+        np.float32
+    )
+
+
+def _fill_compiled(
+    warp: Warp, columns: tuple[FloatArray, ...], rows: tuple[FloatArray, ...]
+) -> tuple[FloatMap, FloatMap]:
+    xp = drjit_namespace()
+    import drjit as dr
+    from drjit.llvm import Float, Float64, UInt32
+
+    width, height = columns[0].size, rows[0].size
+    per_row = Float64(1 / width)
+    dr.make_opaque(per_row)
+    index = dr.arange(UInt32, width * height)
+    y = UInt32((Float64(index) + 0.5) * per_row)  # a whole-number division costs more than the lens
+    x = index - y * UInt32(dr.opaque(UInt32, width))
+    column = tuple(dr.gather(Float64, Float64(values), x) for values in columns)
+    row = tuple(dr.gather(Float64, Float64(values), y) for values in rows)
+    maps = [Float(m) for m in _source_pixel(warp, opaque(warp.constants), column, row, xp)]
+    dr.eval(*maps)
+    map_x, map_y = (m.numpy().reshape(height, width) for m in maps)
+    return map_x, map_y

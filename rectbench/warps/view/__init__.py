@@ -1,0 +1,1 @@
+"""What of a view is shown: angles, frames, the pixels that are looked at."""

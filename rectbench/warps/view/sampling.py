@@ -1,0 +1,58 @@
+"""Which pixels a method is fitted to and scored on: about 500, evenly, inside the image circle."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from rectbench.cameras import Camera
+from rectbench.types import FloatArray
+
+EVALUATION_PIXELS = 500
+"""The paper's "around 500 pixels evenly distributed all over the image" (section III-D)."""
+
+
+def evaluation_pixels(camera: Camera, count: int = EVALUATION_PIXELS) -> FloatArray:
+    """The fixed grid of about `count` pixels [N, 2], row by row.
+
+    Cells of a grid with the image's aspect, their centres; those the lens does not see are left
+    out, and the grid is made finer by their share, so that about `count` remain.
+    """
+    grid = _cell_centres(camera, count)
+    seen = camera.unproject(grid)[1]
+    if 0 < seen.mean() < 1:
+        grid = _cell_centres(camera, count / seen.mean())
+        seen = camera.unproject(grid)[1]
+    return grid[seen]
+
+
+def _cell_centres(camera: Camera, count: float) -> FloatArray:
+    across = max(1, round(math.sqrt(count * camera.width / camera.height)))
+    down = max(1, round(count / across))
+    u = (np.arange(across) + 0.5) * camera.width / across - 0.5
+    v = (np.arange(down) + 0.5) * camera.height / down - 0.5
+    return np.stack(np.meshgrid(u, v), axis=-1).reshape(-1, 2)
+
+
+RIM_POINTS = 257
+"""Points a side of the rim: between two of them an angle's extreme moves by hundredths of a pixel."""
+
+
+def outline_pixels(camera: Camera) -> tuple[FloatArray, float]:
+    """Pixels [N, 2] whose images bound the view's image under any continuous map, and their spacing.
+
+    The rim of the image, half a pixel out, where the lens sees all of it; else a grid over the whole
+    image too, since the image circle's edge then bounds the view. The spacing in pixels tells how far
+    the bound may be off; it is 0 for the rim alone.
+    """
+    right, bottom = camera.width - 0.5, camera.height - 0.5
+    u, v = np.linspace(-0.5, right, RIM_POINTS), np.linspace(-0.5, bottom, RIM_POINTS)
+    sides = ((u, -0.5), (u, bottom), (-0.5, v), (right, v))
+    rim = np.concatenate([np.stack(np.broadcast_arrays(*side), axis=-1) for side in sides])
+    seen = camera.unproject(rim)[1]
+    if seen.all():
+        return rim, 0.0
+    grid = np.stack(np.meshgrid(u, v), axis=-1).reshape(-1, 2)
+    inside = grid[camera.unproject(grid)[1]]
+    return inside, max(camera.size) / (RIM_POINTS - 1)

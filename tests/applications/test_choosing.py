@@ -1,0 +1,76 @@
+"""The best method is the one that the stated rule says, among all that apply."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import rectbench as rb
+from rectbench.applications.choosing import ROWS_AS_GOOD_PX, best_method
+from rectbench.plugins.loading import registry
+from rectbench.types import Matches
+from rectbench.warps import Framing
+from tests.experiments.fakes import write_method
+from tests.rigs_for_tests import points_before, rig
+
+RIG = rig("kannala-brandt")
+
+
+def test_the_best_has_the_least_log_distortion_at_equal_coverage() -> None:
+    choice = best_method(RIG, framing=Framing(coverage=0.9))
+    table = choice.table
+    assert set(table["method"]) == {"abraham", "conventional", "fusiello", "hartley", "local-homography"}
+    assert (table["status"] == "ok").all()
+    np.testing.assert_allclose(table["coverage_pixels"], 0.9, atol=0.005)
+    assert table["log_distortion_kept"].is_monotonic_increasing
+    assert choice.best.method == table["method"][0] == "local-homography"
+    assert choice.best.method in choice.why
+    assert "90% of the source pixels" in choice.why
+    assert table["method"][1] in choice.why
+
+
+def test_a_share_of_the_view_is_asked_where_nobody_asks() -> None:
+    choice = best_method(RIG, methods=["abraham", "local-homography"])
+    assert rb.metrics.coverage(choice.rectification, RIG)["coverage_pixels"] == pytest.approx(0.95, abs=0.005)
+
+
+def test_a_method_whose_rows_are_off_is_not_chosen(tmp_path: Path) -> None:
+    """Its distortion is the least, but its right image is turned."""
+    skewed = write_method(
+        tmp_path,
+        "skewed",
+        "rect = rb.rectify(problem.rig, 'local-homography')\n"
+        "c, s = np.cos(0.02), np.sin(0.02)\n"
+        "turn = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])\n"
+        "right = rb.Warp(rect.right.source, turn @ rect.R_rect_right, rect.right.target)\n"
+        "return rb.Rectification(problem.rig, rect.left, right, rect.size)",
+    )
+    _, left, right = points_before(RIG, 200)
+    methods = [skewed, "abraham"]
+    without = best_method(RIG, methods=methods)
+    assert without.best.method == "skewed"  # nobody knows about its rows
+    choice = best_method(RIG, methods=methods, trusted=Matches(left, right))
+    assert choice.best.method == "abraham"
+    assert f"not counting skewed, whose rows are over {ROWS_AS_GOOD_PX:g} px worse" in choice.why
+    registry.cache_clear()
+
+
+def test_methods_that_do_not_apply_are_listed_with_their_reason(tmp_path: Path) -> None:
+    refuses = write_method(tmp_path, "refuses", "raise rb.Unsupported('an epipole')")
+    breaks = write_method(tmp_path, "breaks", "raise ValueError('no')")
+    choice = best_method(RIG, methods=[refuses, breaks, "abraham"])
+    table = choice.table.set_index("method")
+    assert choice.best.method == "abraham"
+    assert table.loc["refuses", "status"] == "unsupported"
+    assert table.loc["refuses", "reason"] == "an epipole"
+    assert table.loc["breaks", "status"] == "error"
+    with pytest.raises(rb.Unsupported, match=r"no method applies.*refuses: an epipole"):
+        best_method(RIG, methods=[refuses])
+    registry.cache_clear()
+
+
+def test_frames_in_which_methods_show_different_things_are_refused() -> None:
+    with pytest.raises(rb.InvalidInput, match="expected a coverage or fov_deg"):
+        best_method(RIG, framing=Framing(crop="valid"))

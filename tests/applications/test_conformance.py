@@ -1,0 +1,54 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from rectbench.applications.conformance import RIGS, Finding, check_method
+from rectbench.plugins.loading import registry
+from tests.experiments.fakes import write_method
+
+
+def findings(path: str) -> list[Finding]:
+    return list(check_method(registry("methods").get(path)))
+
+
+def failed(path: str) -> dict[str, str]:
+    return {finding.check: finding.detail for finding in findings(path) if finding.result == "failed"}
+
+
+def test_a_sound_method_passes_on_every_rig(tmp_path: Path) -> None:
+    found = findings(write_method(tmp_path, "sound"))
+    assert {finding.result for finding in found} == {"passed"}
+    assert {finding.rig for finding in found} == {"-", *RIGS}
+
+
+WARP = """
+class Odd(rb.Warp):
+    def {method}(self, px):
+        return {value}
+angles = problem.angle_warps()
+target = rb.Epipolar(rb.Radial("equidistant", 100.0, 150.0), rb.Radial("equidistant", 100.0, 150.0))
+sides = [Odd(warp.source, warp.R_rect_cam, target) for warp in angles]
+return rb.Rectification(problem.rig, *sides, (300, 300))
+"""
+
+FAULTS = {
+    "inverse": ("closure", WARP.format(method="inverse", value="super().inverse(px) + 1e-3")),
+    "jacobian": ("jacobian", WARP.format(method="jacobian", value="super().jacobian(px) * 1.01")),
+    "rows": (
+        "rows",
+        "rig = problem.rig\nu, v = (rb.Radial('equidistant', 100.0, c) for c in (150.0, 151.0))\n"
+        "left, right = rb.Epipolar(u, u), rb.Epipolar(u, v)\n"
+        "return rb.Rectification.from_targets(rig, left, right, (300, 300))",
+    ),
+    "random": ("repeatable", "options = options.model_copy(update={'scale': np.random.uniform(0.9, 1)})"),
+    "raises": ("fit", "raise ValueError('no')"),
+    "refuses": ("fit", "raise rb.Unsupported('never')"),
+}
+
+
+@pytest.mark.parametrize("name", FAULTS)
+def test_each_fault_fails_its_check_and_no_other(tmp_path: Path, name: str) -> None:
+    check, fault = FAULTS[name]
+    assert set(failed(write_method(tmp_path, name, fault))) == {check}

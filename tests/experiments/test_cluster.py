@@ -1,0 +1,43 @@
+"""The same cells on a dask cluster on this machine."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+import rectbench as rb
+from rectbench.experiments.execution.running import run
+from tests.experiments.fakes import small_report, write_method
+
+distributed = pytest.importorskip("distributed", reason="the extra rectbench[dask] is not installed")
+
+
+@pytest.fixture
+def address() -> Iterator[str]:
+    with distributed.LocalCluster(
+        n_workers=1, threads_per_worker=2, processes=False, dashboard_address=None
+    ) as cluster:
+        yield cluster.scheduler_address
+
+
+def test_the_rows_are_the_same_and_a_crash_costs_its_cell_alone(tmp_path: Path, address: str) -> None:
+    methods = ("abraham", write_method(tmp_path, "exits", "os._exit(7)"))
+    report = small_report(methods=methods)
+    on_cluster = run(report, dask=address)
+    assert list(on_cluster["status"]) == ["ok", "crash"]
+    assert "7" in on_cluster["reason"][1]
+    # What the cluster finished is in the store here: only the crashed cell runs again.
+    pd.testing.assert_frame_equal(
+        run(report, jobs=1).drop(columns="reason"), on_cluster.drop(columns="reason")
+    )
+    local = run(report, jobs=1, fresh=True)
+    pd.testing.assert_frame_equal(local.drop(columns="reason"), on_cluster.drop(columns="reason"))
+
+
+def test_a_scheduler_that_does_not_answer_is_said_in_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("rectbench.experiments.execution.cluster.CONNECT_TIMEOUT_S", 1)
+    with pytest.raises(rb.Unavailable, match=r"no dask scheduler answers at tcp://127\.0\.0\.1:9"):
+        run(small_report(), dask="tcp://127.0.0.1:9")
