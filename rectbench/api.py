@@ -18,8 +18,9 @@ from rectbench.matching.features.matches import RATIO
 from rectbench.matching.pose.estimate import WORKING_PIXELS, PoseEstimate, pose_from_images
 from rectbench.pairs.pairs import build_world, placed, render_seed
 from rectbench.plugins.fitting import checked_options, fit
-from rectbench.plugins.loading import is_path, registry
-from rectbench.plugins.rectifier import pose_problem
+from rectbench.plugins.rectifier import METHODS, pose_problem
+from rectbench.plugins.scene import SCENES
+from rectbench.registry import is_path, registry
 from rectbench.rigs import Rig
 from rectbench.types import FloatArray, Images, Matches
 from rectbench.warps import Framing, Rectification
@@ -67,7 +68,7 @@ def rectify(
     """
     if not isinstance(rig, Rig):
         raise InvalidInput(f"rig is {type(rig).__name__}; expected a Rig, see rectbench.load_rig")
-    plugin = registry("methods").get(method)
+    plugin = registry(METHODS).get(method)
     problem = pose_problem(
         rig,
         pixels=None if pixels is None else _checked_pixels(pixels, "pixels"),
@@ -237,7 +238,7 @@ def render(
     """
     from rectbench.rendering.pair import render_pair
 
-    found = registry("scenes").get(scene)
+    found = registry(SCENES).get(scene)
     source = str(Path(scene).resolve()) if is_path(scene) else str(scene)
     calibrated = rig if isinstance(rig, Rig) else load_rig(rig)
     true_rig = placed(calibrated, found.name, motion, _checked_seed(seed), _checked_width(image_width))

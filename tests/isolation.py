@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from rectbench.plugins.loading import registry
+from rectbench.registry import forget_plugins
 from rectbench.store.store import STORE_VARIABLE, Store
 
 
@@ -16,4 +16,4 @@ def store(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Store]:
     monkeypatch.setenv(STORE_VARIABLE, str(tmp_path / "store"))
     monkeypatch.chdir(tmp_path)
     yield Store.default()
-    registry.cache_clear()
+    forget_plugins()

@@ -16,8 +16,8 @@ from rectbench.errors import InvalidInput, Unsupported
 from rectbench.experiments.execution.outcomes import outcome_of
 from rectbench.metrics import frame_costs, row_error
 from rectbench.plugins.fitting import checked_options, fit
-from rectbench.plugins.loading import Plugin, registry
-from rectbench.plugins.rectifier import Problem, pose_problem
+from rectbench.plugins.rectifier import METHODS, Problem, Rectifier, pose_problem
+from rectbench.registry import Plugin, registry
 from rectbench.rigs import Rig
 from rectbench.types import Images, Matches
 from rectbench.warps import Framing, Rectification, framed
@@ -127,7 +127,7 @@ def best_method(
     if chosen.fov_deg is None and chosen.coverage is None:
         chosen = replace(chosen, coverage=COVERAGE)
     problem = pose_problem(rig, images=images, matches=matches, seed=seed)
-    found = registry("methods")
+    found = registry(METHODS)
     plugins = found.plugins() if methods is None else [found.get(name) for name in methods]
     tried = [_tried(plugin, problem, chosen, trusted) for plugin in plugins]
     if not any(candidate.rectification for candidate in tried):
@@ -138,10 +138,12 @@ def best_method(
 
 def uncalibrated_methods() -> list[str]:
     """The methods that need no calibration: they work from matches or images alone."""
-    return [plugin.name for plugin in registry("methods").plugins() if "pose" not in plugin.value.needs]
+    return [plugin.name for plugin in registry(METHODS).plugins() if "pose" not in plugin.value.needs]
 
 
-def _tried(plugin: Plugin, problem: Problem, framing: Framing, trusted: Matches | None) -> Candidate:
+def _tried(
+    plugin: Plugin[Rectifier], problem: Problem, framing: Framing, trusted: Matches | None
+) -> Candidate:
     if "images" in plugin.value.needs and problem.images is None:
         return Candidate(plugin.name, status="unsupported", reason="works from images, and there are none")
     try:

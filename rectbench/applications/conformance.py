@@ -15,8 +15,8 @@ from rectbench.experiments.execution.outcomes import outcome_of
 from rectbench.metrics import row_error
 from rectbench.pairs.pairs import placed
 from rectbench.plugins.fitting import checked_options, fit
-from rectbench.plugins.loading import Plugin
-from rectbench.plugins.rectifier import Problem, pose_problem
+from rectbench.plugins.rectifier import Problem, Rectifier, pose_problem
+from rectbench.registry import Plugin
 from rectbench.rigs import Rig
 from rectbench.types import FloatArray, Matches
 from rectbench.warps import Rectification, Warp
@@ -46,7 +46,7 @@ class Finding:
     detail: str
 
 
-def check_method(plugin: Plugin) -> Iterator[Finding]:
+def check_method(plugin: Plugin[Rectifier]) -> Iterator[Finding]:
     """All checks of a rectifier on several rigs, as they are done.
 
     A rig the method refuses as Unsupported fails nothing, but refusing all of them does.
@@ -72,11 +72,11 @@ def check_method(plugin: Plugin) -> Iterator[Finding]:
         yield Finding("all", "fit", "failed", "the method serves none of the rigs")
 
 
-Check = Callable[[Plugin, Problem, Rectification], tuple[bool, str]]
+Check = Callable[[Plugin[Rectifier], Problem, Rectification], tuple[bool, str]]
 
 
 def _found(
-    rig: str, title: str, check: Check, plugin: Plugin, problem: Problem, rect: Rectification
+    rig: str, title: str, check: Check, plugin: Plugin[Rectifier], problem: Problem, rect: Rectification
 ) -> Finding:
     try:
         with warnings.catch_warnings():
@@ -87,7 +87,7 @@ def _found(
     return Finding(rig, title, "passed" if passed else "failed", detail)
 
 
-def _described(plugin: Plugin) -> Finding:
+def _described(plugin: Plugin[Rectifier]) -> Finding:
     documented = all(field.description for field in plugin.value.Options.model_fields.values())
     detail = plugin.summary or "the class has no docstring; expected one line that says what it is"
     if not documented:
@@ -99,7 +99,7 @@ def _sides(problem: Problem, rect: Rectification) -> tuple[tuple[str, Warp, Floa
     return ("left", rect.left, problem.pixels_left), ("right", rect.right, problem.pixels_right)
 
 
-def _maps(plugin: Plugin, problem: Problem, rect: Rectification) -> tuple[bool, str]:
+def _maps(plugin: Plugin[Rectifier], problem: Problem, rect: Rectification) -> tuple[bool, str]:
     width, height = rect.size
     for side in ("left", "right"):
         for table in rect.maps(side):
@@ -111,7 +111,7 @@ def _maps(plugin: Plugin, problem: Problem, rect: Rectification) -> tuple[bool, 
     return min(shares) > 0, f"{shares[0]:.0%} and {shares[1]:.0%} of the output are valid"
 
 
-def _closure(plugin: Plugin, problem: Problem, rect: Rectification) -> tuple[bool, str]:
+def _closure(plugin: Plugin[Rectifier], problem: Problem, rect: Rectification) -> tuple[bool, str]:
     worst, mapped = 0.0, []
     for _, warp, pixels in _sides(problem, rect):
         there = warp.forward(pixels)
@@ -127,7 +127,7 @@ def _closure(plugin: Plugin, problem: Problem, rect: Rectification) -> tuple[boo
     return worst <= CLOSURE_PX, f"{worst:.1e} px, {share:.0%} of the pixels mapped"
 
 
-def _jacobian(plugin: Plugin, problem: Problem, rect: Rectification) -> tuple[bool, str]:
+def _jacobian(plugin: Plugin[Rectifier], problem: Problem, rect: Rectification) -> tuple[bool, str]:
     worst = 0.0
     for side, warp, pixels in _sides(problem, rect):
         exact = warp.jacobian(pixels)
@@ -147,7 +147,7 @@ def _jacobian(plugin: Plugin, problem: Problem, rect: Rectification) -> tuple[bo
     return worst <= DERIVATIVE_ERROR, f"{worst:.1e} off central differences"
 
 
-def _orientation(plugin: Plugin, problem: Problem, rect: Rectification) -> tuple[bool, str]:
+def _orientation(plugin: Plugin[Rectifier], problem: Problem, rect: Rectification) -> tuple[bool, str]:
     shares = []
     for _, warp, pixels in _sides(problem, rect):
         determinant = np.linalg.det(warp.jacobian(pixels))
@@ -155,7 +155,7 @@ def _orientation(plugin: Plugin, problem: Problem, rect: Rectification) -> tuple
     return min(shares) == 1, f"det J > 0 at {min(shares):.1%} of the mapped pixels"
 
 
-def _rows(plugin: Plugin, problem: Problem, rect: Rectification) -> tuple[bool, str]:
+def _rows(plugin: Plugin[Rectifier], problem: Problem, rect: Rectification) -> tuple[bool, str]:
     errors = row_error(rect, *_unseen_matches(problem.rig)).rectified_px
     errors = errors[np.isfinite(errors)]
     if not errors.size:
@@ -177,7 +177,7 @@ def _unseen_matches(rig: Rig, count: int = 3000) -> Matches:
     return Matches(pixels[seen], pixels_right[seen])
 
 
-def _repeatable(plugin: Plugin, problem: Problem, rect: Rectification) -> tuple[bool, str]:
+def _repeatable(plugin: Plugin[Rectifier], problem: Problem, rect: Rectification) -> tuple[bool, str]:
     again = fit(plugin, problem, checked_options(plugin, {}))
     if again.size != rect.size:
         return False, f"{rect.size} px, then {again.size} px"

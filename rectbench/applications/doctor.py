@@ -9,12 +9,16 @@ import re
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 from rectbench import llvm
 from rectbench.calibrations import rig_names
 from rectbench.errors import RectbenchError
 from rectbench.experiments.run_folder import cpu_name, llvm_facts
-from rectbench.plugins.loading import registry
+from rectbench.experiments.spec import REPORTS
+from rectbench.plugins.rectifier import METHODS
+from rectbench.plugins.scene import SCENES
+from rectbench.registry import Kind, registry
 from rectbench.store.keys import versions
 from rectbench.store.store import Store
 
@@ -99,9 +103,10 @@ def _store() -> Finding:
 
 
 def _plugins() -> Iterator[Finding]:
-    for kind in ("methods", "scenes", "reports"):
+    kinds: tuple[Kind[Any], ...] = (METHODS, SCENES, REPORTS)
+    for kind in kinds:
         found = registry(kind)
-        yield Finding(kind, bool(found.names()), ", ".join(found.names()) or "none are installed")
+        yield Finding(kind.name, bool(found.names()), ", ".join(found.names()) or "none are installed")
         for place, reason in found.broken.items():
-            yield Finding(kind, None, f"broken: {place}: {reason}")
+            yield Finding(kind.name, None, f"broken: {place}: {reason}")
     yield Finding("rigs", bool(rig_names()), ", ".join(rig_names()) or "none are installed")

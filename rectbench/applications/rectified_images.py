@@ -31,9 +31,9 @@ from rectbench.matching.pose.consistent import consistent_matches
 from rectbench.metrics import RowError, frame_costs, row_error
 from rectbench.pairs.finding.pairing import FilePair, LeftOut, Pairing
 from rectbench.plugins.fitting import checked_options, fit
-from rectbench.plugins.loading import registry
-from rectbench.plugins.rectifier import pose_problem
+from rectbench.plugins.rectifier import METHODS, pose_problem
 from rectbench.progress import Progress
+from rectbench.registry import registry
 from rectbench.rigs import Rig
 from rectbench.types import Images, Matches
 from rectbench.warps import Framing, Rectification, framed
@@ -174,7 +174,7 @@ def rectify_images(
     choice, own, rect = _rectification(rig, wanted, first, matches, trusted)
     costs = frame_costs(rect, rig)
     own_costs = None if own is None else frame_costs(own, rig)
-    method = choice.best.method if choice else registry("methods").get(wanted.method).name
+    method = choice.best.method if choice else registry(METHODS).get(wanted.method).name
     facts = {"method": method, "options": dict(wanted.options)} | ({"chosen": choice.why} if choice else {})
     if wanted.without_calibration:
         facts["calibrated"] = "no: the rig below is assumed, and its baseline is 1 of an unknown unit"
@@ -253,7 +253,7 @@ def _rectification(
             seed=wanted.seed,
         )
         return choice, None, choice.rectification
-    plugin = registry("methods").get(wanted.method)
+    plugin = registry(METHODS).get(wanted.method)
     if wanted.without_calibration and "pose" in plugin.value.needs:
         instead = " or ".join(uncalibrated_methods())
         raise InvalidInput(f"{plugin.name} needs a calibrated rig; expected one, or the method {instead}")

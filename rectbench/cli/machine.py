@@ -17,9 +17,10 @@ def check(
     """Run the conformance suite over a method; exit code 1 where a check fails."""
     from rectbench.applications.conformance import check_method
     from rectbench.cli import printing as terminal
-    from rectbench.plugins.loading import registry
+    from rectbench.plugins.rectifier import METHODS
+    from rectbench.registry import registry
 
-    method = registry("methods").get(plugin)
+    method = registry(METHODS).get(plugin)
     failed = terminal.show_checks(method.name, check_method(method))
     raise typer.Exit(1 if failed else 0)
 

@@ -47,12 +47,16 @@ def console() -> Console:
 
 def show_names(kind: str, verbose: bool) -> None:
     """The names of a kind with a line about each; below, the plugins that cannot be loaded."""
-    from rectbench.plugins.loading import registry
+    from rectbench.experiments.spec import REPORTS
+    from rectbench.plugins.rectifier import METHODS
+    from rectbench.plugins.scene import SCENES
+    from rectbench.registry import Kind, registry
 
     screen, table = console(), _table(kind)
     broken: dict[str, str] = {}
-    if kind in ("methods", "scenes", "reports"):
-        found = registry(kind)
+    kinds: dict[str, Kind[Any]] = {known.name: known for known in (METHODS, SCENES, REPORTS)}
+    if kind in kinds:
+        found = registry(kinds[kind])
         broken = found.broken
         for plugin in found.plugins():
             table.add_row(plugin.name, plugin.summary)

@@ -16,9 +16,9 @@ import pandas as pd
 
 from rectbench.errors import InvalidInput, UnknownName
 from rectbench.experiments.run_folder import read_facts, read_results
-from rectbench.experiments.spec import ESTIMATED
+from rectbench.experiments.spec import ESTIMATED, REPORTS
 from rectbench.experiments.tasks import IDENTITY
-from rectbench.plugins.loading import registry
+from rectbench.registry import registry
 
 KEY = [name for name in IDENTITY if name != "report"]
 
@@ -107,7 +107,7 @@ def accepted_path(run_dir: Path) -> Path:
             f"{run_dir} is a run of photographs, whose numbers are not the report's; expected --accepted FILE"
         )
     try:
-        report = registry("reports").get(facts["report"]).path
+        report = registry(REPORTS).get(facts["report"]).path
     except UnknownName:
         if not facts.get("report_file"):
             raise

@@ -6,18 +6,22 @@ import itertools
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from rectbench.calibrations import load_rig, rig_names
 from rectbench.errors import InvalidInput, UnknownName
-from rectbench.experiments.spec import ESTIMATED, Group, PairName, Report
+from rectbench.experiments.spec import ESTIMATED, REPORTS, Group, PairName, Report
 from rectbench.experiments.tasks import AS_CALIBRATED, AnyPair, Cell, CellTask, PairTask, PhotoTask
 from rectbench.pairs.finding.photographs import Photographs, find_photographs
 from rectbench.plugins.fitting import checked_options
-from rectbench.plugins.loading import Plugin, is_path, registry
+from rectbench.plugins.rectifier import METHODS, Rectifier
+from rectbench.plugins.scene import SCENES
+from rectbench.registry import Kind, Plugin, is_path, registry
 from rectbench.rigs.motions import MOTIONS
 from rectbench.rigs.poses import POSES
 from rectbench.store.keys import canonical_json
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True)
@@ -72,7 +76,7 @@ def find_report(report: Report | str | Path) -> Report:
     """A report by name, by path, or as it is."""
     if isinstance(report, Report):
         return report
-    found: Report = registry("reports").get(report).value
+    found: Report = registry(REPORTS).get(report).value
     return found
 
 
@@ -125,7 +129,7 @@ def _tasks_of(
     names = _chosen_methods(part, report, chosen)
     if not names:
         return
-    methods = _plugins("methods", names)
+    methods = _plugins(METHODS, names)
     option_sets = _option_sets({**report.options, **part.options}, chosen, [plugin for plugin, _ in methods])
     needs = frozenset().union(*(plugin.value.needs for plugin, _ in methods))
     pairs = _chosen_pairs(part, report, chosen)
@@ -159,7 +163,7 @@ def _rendered(
     pairs: list[PairName], seeds: Sequence[int], report: Report, part: Group, *, truth: bool, images: bool
 ) -> Iterator[PairTask]:
     """The pairs of a part that are rendered: each rig in its scene."""
-    scenes = {name: _plugins("scenes", [name])[0] for name in dict.fromkeys(scene for scene, _, _ in pairs)}
+    scenes = {name: _plugins(SCENES, [name])[0] for name in dict.fromkeys(scene for scene, _, _ in pairs)}
     rigs = _rigs(dict.fromkeys(rig for _, rig, _ in pairs))
     _require_known("motion", [motion for _, _, motion in pairs], MOTIONS)
     for (scene, rig, motion), seed in itertools.product(pairs, seeds):
@@ -247,14 +251,14 @@ def _with(pair: PairName, place: int, name: str) -> PairName:
     return scene, rig, motion
 
 
-def _plugins(kind: Any, names: Sequence[str]) -> list[tuple[Plugin, str]]:
+def _plugins(kind: Kind[T], names: Sequence[str]) -> list[tuple[Plugin[T], str]]:
     """Each plugin with what it is found by in another process: its name, or its absolute path."""
     found = [(registry(kind).get(name), _source(name)) for name in names]
-    by_name: dict[str, tuple[Plugin, str]] = {}
+    by_name: dict[str, tuple[Plugin[T], str]] = {}
     for plugin, source in found:
         rival, _ = by_name.setdefault(plugin.name, (plugin, source))
         if rival.path != plugin.path:
-            raise InvalidInput(f"two {kind} are called '{plugin.name}': {rival.path} and {plugin.path}")
+            raise InvalidInput(f"two {kind.name} are called '{plugin.name}': {rival.path} and {plugin.path}")
     return list(by_name.values())
 
 
@@ -299,11 +303,11 @@ def _check_option_names(report: Report, chosen: Selection, methods: set[str]) ->
     stated = [name for part in report.parts for name in part.options]
     for name in dict.fromkeys((*report.options, *stated, *chosen.options)):
         if name not in methods:
-            registry("methods").get(name)
+            registry(METHODS).get(name)
 
 
 def _option_sets(
-    own: Mapping[str, tuple[dict[str, Any], ...]], chosen: Selection, methods: list[Plugin]
+    own: Mapping[str, tuple[dict[str, Any], ...]], chosen: Selection, methods: list[Plugin[Rectifier]]
 ) -> dict[str, list[dict[str, Any]]]:
     """The sets of options each method runs with, checked; the default ones where none are given."""
     sets = {}

@@ -18,7 +18,8 @@ from rectbench.experiments.tasks import IDENTITY, CellTask, PhotoTask
 from rectbench.images.stereo_pair import StereoPair
 from rectbench.pairs.pairs import image_inputs, load_images, load_truth, placed_rig
 from rectbench.plugins.fitting import checked_options, fit
-from rectbench.plugins.loading import registry
+from rectbench.plugins.rectifier import METHODS
+from rectbench.registry import registry
 from rectbench.rendering.truth import Truth
 from rectbench.rigs import Rig
 from rectbench.store.keys import digest
@@ -79,7 +80,7 @@ def _found_matches(pair: PhotoTask, store: Store) -> Matches:
 
 def recalled_rectification(task: CellTask, store: Store | None = None) -> Rectification:
     """What the cell's method made of it, fitted again."""
-    method = registry("methods").get(task.method_source)
+    method = registry(METHODS).get(task.method_source)
     problem = problem_of(task, store or Store.default())
     return fit(method, problem, checked_options(method, task.options))
 

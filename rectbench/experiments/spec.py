@@ -9,6 +9,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
 
 from rectbench.experiments.claims import Claim
+from rectbench.registry.kind import Described, Kind
 
 Metric = Literal[
     "distortion",
@@ -246,3 +247,16 @@ class Report(BaseModel):
 
 def _distinct(names: Iterable[str]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(names))
+
+
+def _described(value: Any) -> Described[Report] | None:
+    return Described(value.name, value.title, value) if isinstance(value, Report) else None
+
+
+REPORTS: Kind[Report] = Kind(
+    name="reports",
+    singular="report",
+    expected="a rectbench.Report",
+    package="rectbench_reports",
+    described=_described,
+)

@@ -10,12 +10,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rectbench.calibrations import load_rig
-from rectbench.errors import InvalidResult, Unavailable, UnknownName
+from rectbench.errors import Unavailable, UnknownName
 from rectbench.experiments.tasks import AnyPair, PairTask, PhotoTask
 from rectbench.images.stereo_pair import StereoPair
 from rectbench.pairs.photo_pairs import calibrated_rig, calibration_inputs, photo_inputs, read_photographs
 from rectbench.pairs.rig_numbers import rig_numbers
-from rectbench.plugins.loading import registry
+from rectbench.plugins.scene import SCENES
+from rectbench.registry import registry
 from rectbench.rendering.truth import Truth
 from rectbench.rendering.world import World
 from rectbench.rendering.xml_world import XmlWorld
@@ -61,7 +62,7 @@ def truth_inputs(pair: AnyPair) -> Inputs:
         return calibration_inputs(pair)
     return {
         "scene": pair.scene,
-        "scene_source": registry("scenes").get(pair.scene_source).digest,
+        "scene_source": registry(SCENES).get(pair.scene_source).digest,
         "rig": rig_numbers(load_rig(pair.rig_source)),
         "image_width": pair.image_width,
         "motion": pair.motion,
@@ -150,8 +151,4 @@ def set_stage(scene_source: str, seed: int, quality: str) -> Stage:
 
 def build_world(scene_source: str, seed: int) -> World | XmlWorld:
     """The world of a scene. Raises InvalidResult where the scene returns something else."""
-    scene = registry("scenes").get(scene_source).value
-    world = scene.builder(seed)
-    if not isinstance(world, World | XmlWorld):
-        raise InvalidResult(f"scene {scene.name} returned {type(world).__name__}; expected a World")
-    return world
+    return registry(SCENES).get(scene_source).value.build(seed)

@@ -9,13 +9,13 @@ import numpy as np
 from pydantic import ValidationError
 
 from rectbench.errors import InvalidInput, InvalidResult, UnknownName
-from rectbench.plugins.loading import Plugin
-from rectbench.plugins.rectifier import Options, Problem
+from rectbench.plugins.rectifier import Options, Problem, Rectifier
+from rectbench.registry import Plugin
 from rectbench.warps import Rectification, Warp
 from rectbench.warps.rectification import in_frame
 
 
-def checked_options(plugin: Plugin, given: Mapping[str, Any]) -> Options:
+def checked_options(plugin: Plugin[Rectifier], given: Mapping[str, Any]) -> Options:
     """The method's options, those not given at their defaults.
 
     Raises UnknownName for one the method has not, InvalidInput for a value it cannot have.
@@ -34,11 +34,11 @@ def checked_options(plugin: Plugin, given: Mapping[str, Any]) -> Options:
         ) from None
 
 
-def fit(plugin: Plugin, problem: Problem, options: Options) -> Rectification:
+def fit(plugin: Plugin[Rectifier], problem: Problem, options: Options) -> Rectification:
     """The method's answer, checked; raises InvalidResult for one of the wrong type, shape or values."""
     rectification = plugin.value.fit(problem, options)
     check_result(plugin.name, rectification, problem)
-    return rectification  # type: ignore[no-any-return]  # a plugin's own word, checked the line before
+    return rectification
 
 
 def check_result(method: str, result: object, problem: Problem) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
@@ -12,6 +13,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
+from rectbench.registry.kind import Described, Kind
 from rectbench.rigs import Rig
 from rectbench.types import FloatArray, Images, Matches
 from rectbench.warps.frame import rectifying_rotations
@@ -126,3 +128,30 @@ class Rectifier(ABC):
     @abstractmethod
     def fit(self, problem: Problem, options: Any) -> Rectification:
         """The rectification of the rig; raises Unsupported, with the reason, where there is none."""
+
+
+def _described(value: Any) -> Described[Rectifier] | None:
+    """A rectifier, or the only instance of a class of them."""
+    if inspect.isclass(value) and issubclass(value, Rectifier):
+        if inspect.isabstract(value) and "name" not in vars(value):
+            return None  # a base class for the file's own use
+        value = value()
+    if not isinstance(value, Rectifier):
+        return None
+    name = getattr(value, "name", None)
+    if not isinstance(name, str) or not name:
+        raise InvalidInput(f"{type(value).__name__}.name is {name!r}; expected the method's name")
+    if not (inspect.isclass(value.Options) and issubclass(value.Options, Options)):
+        raise InvalidInput(
+            f"{type(value).__name__}.Options is {value.Options!r}; expected a subclass of Options"
+        )
+    return Described(name, (inspect.getdoc(type(value)) or "").partition("\n")[0], value)
+
+
+METHODS: Kind[Rectifier] = Kind(
+    name="methods",
+    singular="method",
+    expected="a subclass of rectbench.Rectifier with a name",
+    package="rectbench_methods",
+    described=_described,
+)

@@ -9,7 +9,7 @@ import pytest
 
 import rectbench as rb
 from rectbench.applications.choosing import ROWS_AS_GOOD_PX, best_method
-from rectbench.plugins.loading import registry
+from rectbench.registry import forget_plugins
 from rectbench.types import Matches
 from rectbench.warps import Framing
 from tests.experiments.fakes import write_method
@@ -54,7 +54,7 @@ def test_a_method_whose_rows_are_off_is_not_chosen(tmp_path: Path) -> None:
     choice = best_method(RIG, methods=methods, trusted=Matches(left, right))
     assert choice.best.method == "abraham"
     assert f"not counting skewed, whose rows are over {ROWS_AS_GOOD_PX:g} px worse" in choice.why
-    registry.cache_clear()
+    forget_plugins()
 
 
 def test_methods_that_do_not_apply_are_listed_with_their_reason(tmp_path: Path) -> None:
@@ -68,7 +68,7 @@ def test_methods_that_do_not_apply_are_listed_with_their_reason(tmp_path: Path) 
     assert table.loc["breaks", "status"] == "error"
     with pytest.raises(rb.Unsupported, match=r"no method applies.*refuses: an epipole"):
         best_method(RIG, methods=[refuses])
-    registry.cache_clear()
+    forget_plugins()
 
 
 def test_frames_in_which_methods_show_different_things_are_refused() -> None:

@@ -5,12 +5,13 @@ from pathlib import Path
 import pytest
 
 from rectbench.applications.conformance import RIGS, Finding, check_method
-from rectbench.plugins.loading import registry
+from rectbench.plugins.rectifier import METHODS
+from rectbench.registry import registry
 from tests.experiments.fakes import write_method
 
 
 def findings(path: str) -> list[Finding]:
-    return list(check_method(registry("methods").get(path)))
+    return list(check_method(registry(METHODS).get(path)))
 
 
 def failed(path: str) -> dict[str, str]:

@@ -17,7 +17,8 @@ import pytest
 
 import rectbench as rb
 from rectbench import cli
-from rectbench.plugins.loading import registry
+from rectbench.plugins.rectifier import METHODS
+from rectbench.registry import forget_plugins, registry
 from rectbench.store.store import STORE_VARIABLE
 from tests.conftest import Shell
 from tests.experiments.fakes import write_method, write_report_file, write_scene
@@ -28,7 +29,7 @@ def _place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     monkeypatch.setenv(STORE_VARIABLE, str(tmp_path / "store"))
     monkeypatch.chdir(tmp_path)
     yield
-    registry.cache_clear()
+    forget_plugins()
 
 
 @pytest.fixture(scope="module")
@@ -182,8 +183,8 @@ def test_list_shows_everything_and_what_is_broken(
     assert code == 0
     for name in ("local-homography", "street", "t265", "sideways", "perturbed", "quick"):
         assert name in out
-    registry.cache_clear()
-    found = registry("methods")
+    forget_plugins()
+    found = registry(METHODS)
     found.broken["/there/mine.py"] = "SyntaxError: no"
     code, out, _ = shell("list", "methods")
     assert code == 0

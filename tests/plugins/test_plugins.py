@@ -7,47 +7,50 @@ from pathlib import Path
 import pytest
 
 import rectbench as rb
-from rectbench.plugins.loading import Registry, registry
+from rectbench.experiments.spec import REPORTS
+from rectbench.plugins.rectifier import METHODS
+from rectbench.plugins.scene import SCENES
+from rectbench.registry import Registry, forget_plugins, registry
 from tests.experiments.fakes import write_method, write_report_file, write_scene
 
 
 def test_built_ins_are_found_by_name() -> None:
     assert {"conventional", "abraham", "hartley", "fusiello", "local-homography"} <= set(
-        registry("methods").names()
+        registry(METHODS).names()
     )
-    assert {"street", "corridor", "room", "forest"} <= set(registry("scenes").names())
-    assert "quick" in registry("reports").names()
-    for kind in ("methods", "scenes", "reports"):
-        found = registry(kind)  # type: ignore[arg-type]
+    assert {"street", "corridor", "room", "forest"} <= set(registry(SCENES).names())
+    assert "quick" in registry(REPORTS).names()
+    for kind in (METHODS, SCENES, REPORTS):
+        found = registry(kind)
         assert found.broken == {}
         assert all(plugin.summary for plugin in found.plugins())
 
 
 def test_a_file_serves_where_a_name_does(tmp_path: Path) -> None:
-    assert registry("methods").get(write_method(tmp_path, "mine")).name == "mine"
-    assert registry("methods").get(Path(write_method(tmp_path, "mine"))).name == "mine"
-    assert registry("scenes").get(write_scene(tmp_path, "wall")).value.build(0).meshes
-    assert registry("reports").get(write_report_file(tmp_path, "little")).value.name == "little"
+    assert registry(METHODS).get(write_method(tmp_path, "mine")).name == "mine"
+    assert registry(METHODS).get(Path(write_method(tmp_path, "mine"))).name == "mine"
+    assert registry(SCENES).get(write_scene(tmp_path, "wall")).value.build(0).meshes
+    assert registry(REPORTS).get(write_report_file(tmp_path, "little")).value.name == "little"
 
 
 def test_the_digest_of_a_plugin_is_that_of_its_source(tmp_path: Path) -> None:
-    first = registry("methods").get(write_method(tmp_path, "mine")).digest
-    assert registry("methods").get(write_method(tmp_path / "elsewhere", "mine")).digest == first
-    assert registry("methods").get(write_method(tmp_path, "mine", "x = 1")).digest != first
+    first = registry(METHODS).get(write_method(tmp_path, "mine")).digest
+    assert registry(METHODS).get(write_method(tmp_path / "elsewhere", "mine")).digest == first
+    assert registry(METHODS).get(write_method(tmp_path, "mine", "x = 1")).digest != first
 
 
 def test_an_edited_file_is_loaded_anew(tmp_path: Path) -> None:
-    first = registry("methods").get(write_method(tmp_path, "mine"))
+    first = registry(METHODS).get(write_method(tmp_path, "mine"))
     path = Path(first.path)
     path.write_text(path.read_text().replace('"mine"', '"yours"'))
-    assert registry("methods").get(str(path)).name == "yours"
+    assert registry(METHODS).get(str(path)).name == "yours"
 
 
 def test_an_unknown_name_gets_the_nearest() -> None:
     with pytest.raises(
         rb.UnknownName, match="unknown method 'local-homografy'; did you mean local-homography"
     ):
-        registry("methods").get("local-homografy")
+        registry(METHODS).get("local-homografy")
 
 
 BROKEN = {
@@ -85,27 +88,27 @@ def test_a_broken_file_says_why_in_one_line(tmp_path: Path, kind: str) -> None:
     source, reason = BROKEN[kind]
     (tmp_path / "mine.py").write_text(source)
     with pytest.raises(rb.InvalidInput, match=reason) as caught:
-        registry("methods").get(str(tmp_path / "mine.py"))
+        registry(METHODS).get(str(tmp_path / "mine.py"))
     assert "mine.py" in str(caught.value)
     assert "\n" not in str(caught.value)
 
 
 def test_a_report_with_a_wrong_field_names_it(tmp_path: Path) -> None:
     with pytest.raises(rb.InvalidInput, match="spp") as caught:
-        registry("reports").get(write_report_file(tmp_path, spp=0))
+        registry(REPORTS).get(write_report_file(tmp_path, spp=0))
     assert "\n" not in str(caught.value)
 
 
 def test_a_file_that_is_not_there_is_named(tmp_path: Path) -> None:
     with pytest.raises(rb.InvalidInput, match=r"there is no file .*absent\.py"):
-        registry("methods").get(str(tmp_path / "absent.py"))
+        registry(METHODS).get(str(tmp_path / "absent.py"))
 
 
 def test_two_plugins_of_one_name_name_both_files(tmp_path: Path) -> None:
     with pytest.raises(rb.InvalidInput) as caught:
-        registry("methods").get(write_method(tmp_path, "abraham"))
+        registry(METHODS).get(write_method(tmp_path, "abraham"))
     assert str(tmp_path / "abraham.py") in str(caught.value)
-    assert str(registry("methods").get("abraham").path) in str(caught.value)
+    assert str(registry(METHODS).get("abraham").path) in str(caught.value)
 
 
 class FakePoint(importlib.metadata.EntryPoint):
@@ -122,8 +125,8 @@ def with_points(monkeypatch: pytest.MonkeyPatch, folder: Path, *modules: str) ->
     monkeypatch.setattr(importlib.metadata, "entry_points", entry_points)
     for module in modules:
         monkeypatch.delitem(sys.modules, module.partition(":")[0], raising=False)
-    registry.cache_clear()
-    return registry("methods")
+    forget_plugins()
+    return registry(METHODS)
 
 
 def test_installed_packages_announce_theirs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -162,7 +165,7 @@ def test_an_xml_scene_changes_with_the_files_it_names(tmp_path: Path) -> None:
         '<scene version="3.0.0"><shape type="ply"><string name="filename" value="mesh.ply"/></shape></scene>'
     )
     (tmp_path / "mesh.ply").write_text("one")
-    first = registry("scenes").get(str(scene))
+    first = registry(SCENES).get(str(scene))
     assert first.name == "hall"
     (tmp_path / "mesh.ply").write_text("two")
-    assert registry("scenes").get(str(scene)).digest != first.digest
+    assert registry(SCENES).get(str(scene)).digest != first.digest

@@ -27,9 +27,10 @@ from rectbench.errors import InvalidInput
 from rectbench.pairs.pairs import RENDERING_PACKAGES, placed, render_seed, set_stage
 from rectbench.pairs.rig_numbers import rig_numbers
 from rectbench.plugins.fitting import checked_options, fit
-from rectbench.plugins.loading import Plugin, registry
-from rectbench.plugins.rectifier import Options, pose_problem
+from rectbench.plugins.rectifier import METHODS, Options, pose_problem
+from rectbench.plugins.scene import SCENES
 from rectbench.progress import Progress
+from rectbench.registry import Plugin, registry
 from rectbench.rigs import Rig
 from rectbench.store.keys import code_digest, digest, file_digest, versions
 from rectbench.warps import Rectification
@@ -55,7 +56,7 @@ class Export:
 
     def settings(self) -> dict[str, Any]:
         """All that shapes the files of a pair, but for its seed, as JSON."""
-        scene, method = registry("scenes").get(self.scene_source), self.plugin()
+        scene, method = registry(SCENES).get(self.scene_source), self.plugin()
         return {
             "scene": scene.name,
             "scene_source": scene.digest,
@@ -71,9 +72,9 @@ class Export:
             "versions": dict(versions("rectbench", *RENDERING_PACKAGES)),
         }
 
-    def plugin(self) -> Plugin:
+    def plugin(self) -> Plugin[Rectifier]:
         """The method; raises InvalidInput for one that works from matches, whose rows are not exact."""
-        plugin = registry("methods").get(self.method)
+        plugin = registry(METHODS).get(self.method)
         if "pose" not in plugin.value.needs:
             raise InvalidInput(
                 f"{plugin.name} works from matches, so its rows do not agree exactly; "
@@ -87,7 +88,7 @@ class Export:
 
     def rig_of(self, seed: int) -> Rig:
         """The true rig of a seed's pair."""
-        scene = registry("scenes").get(self.scene_source).name
+        scene = registry(SCENES).get(self.scene_source).name
         return placed(self.rig, scene, self.motion, seed, self.image_width)
 
     def rectification(self, seed: int) -> Rectification:
@@ -141,7 +142,7 @@ def _name(seed: int) -> str:
 def _write_pair(export: Export, seed: int, mark: str, out: Path) -> dict[str, Any]:
     """Render and write a pair; its manifest, which is written last."""
     rect = export.rectification(seed)
-    scene, name = registry("scenes").get(export.scene_source).name, _name(seed)
+    scene, name = registry(SCENES).get(export.scene_source).name, _name(seed)
     stage = set_stage(export.scene_source, seed, export.quality)
     truth, rectified = stage.survey(rect.rig), stage.survey_rectified(rect)
     noise = render_seed(scene, export.rig.name, export.motion, seed)

@@ -36,8 +36,8 @@ from rectbench.pairs.pairs import (
     truth_inputs,
 )
 from rectbench.plugins.fitting import check_result, checked_options, fit
-from rectbench.plugins.loading import registry
-from rectbench.plugins.rectifier import Problem, pose_problem
+from rectbench.plugins.rectifier import METHODS, Problem, pose_problem
+from rectbench.registry import registry
 from rectbench.rendering.truth import Truth
 from rectbench.rigs import Rig
 from rectbench.rigs.poses import POSES, perturb
@@ -61,7 +61,7 @@ Result = TypeVar("Result")
 
 def cell_inputs(task: CellTask) -> Inputs:
     """All that shapes the row of a cell; its report's name does not."""
-    method = registry("methods").get(task.method_source)
+    method = registry(METHODS).get(task.method_source)
     return {
         "truth": truth_inputs(task.pair),
         "images": image_inputs(task.pair) if uses_images(task) else None,
@@ -79,7 +79,7 @@ def cell_inputs(task: CellTask) -> Inputs:
 
 def uses_images(task: CellTask) -> bool:
     """Whether the row of a cell hangs on its images, as that of photographs always does."""
-    needs = registry("methods").get(task.method_source).value.needs
+    needs = registry(METHODS).get(task.method_source).value.needs
     asked = "images" in needs or task.cell.pose == ESTIMATED or not IMAGE_METRICS.isdisjoint(task.metrics)
     return asked or isinstance(task.pair, PhotoTask)
 
@@ -137,7 +137,7 @@ def believed_rig(task: CellTask, store: Store) -> Rig:
 
 def problem_of(task: CellTask, store: Store) -> Problem:
     """What the cell's rectifier may know."""
-    cell, needs = task.cell, registry("methods").get(task.method_source).value.needs
+    cell, needs = task.cell, registry(METHODS).get(task.method_source).value.needs
     images = load_images(task.pair, store) if "images" in needs else None
     return pose_problem(
         believed_rig(task, store),
@@ -197,7 +197,7 @@ def _truth(pair: AnyPair, store: Store) -> Truth:
 
 
 def _measured(task: CellTask, store: Store) -> Outcome:
-    method = registry("methods").get(task.method_source)
+    method = registry(METHODS).get(task.method_source)
     if isinstance(task.pair, PhotoTask):
         load_images(task.pair, store)  # raises for images that are not the calibration's
     options, problem = checked_options(method, task.options), problem_of(task, store)

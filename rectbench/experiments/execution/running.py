@@ -21,8 +21,8 @@ from rectbench.experiments.run_folder import check_writable, facts_of, table_of,
 from rectbench.experiments.spec import Report
 from rectbench.experiments.tasks import CellTask, PairTask
 from rectbench.pairs.pairs import IMAGES, TRUTH, image_inputs, is_made, truth_inputs
-from rectbench.plugins.loading import is_path
 from rectbench.progress import Progress, progress_for
+from rectbench.registry import is_path
 from rectbench.store.store import Store
 
 RUNS = Path("runs")

@@ -1,0 +1,58 @@
+"""What a kind of plugins is, and a plugin of it once it is loaded."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Generic, NamedTuple, TypeVar
+
+T = TypeVar("T")
+
+
+class Described(NamedTuple, Generic[T]):
+    """What a module's value is as a plugin: its name, a line about it, and the plugin itself."""
+
+    name: str
+    summary: str
+    value: T
+
+
+@dataclass(frozen=True, eq=False)
+class Kind(Generic[T]):
+    """A kind of plugins. Its contract's module makes the one object of it: `METHODS`, `SCENES`, ...
+
+    Parameters
+    ----------
+    name : plural, as in `rectbench list methods` and the entry points' group `rectbench.methods`.
+    singular : as in errors.
+    expected : what a plugin's file has to hold; ends a sentence of an error.
+    package : the package whose files hold the built-in ones; a file that holds none is no fault there
+        where `is_shared`.
+    described : the plugin that a value of a module is, None for any other value. Raises InvalidInput for one
+        that is meant as a plugin and is broken.
+    by_suffix : how a file of another suffix than `.py` is read, such as a scene in Mitsuba's `.xml`: the
+        plugin, and the files that shape it.
+    """
+
+    name: str
+    singular: str
+    expected: str
+    package: str
+    described: Callable[[Any], Described[T] | None]
+    by_suffix: Mapping[str, Callable[[Path], tuple[Described[T], list[Path]]]] = field(default_factory=dict)
+    is_shared: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Plugin(Generic[T]):
+    """A loaded plugin."""
+
+    kind: Kind[T]
+    name: str
+    summary: str
+    path: Path
+    """The file it comes from."""
+    digest: str
+    """SHA-256 of all that shapes it, for keys."""
+    value: T
