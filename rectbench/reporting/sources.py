@@ -13,12 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rectbench.errors import InvalidInput, InvalidResult, RectbenchError
-from rectbench.experiments import recall
-from rectbench.experiments.recall import KnownPair
 from rectbench.experiments.tasks import AnyPair, CellTask
 from rectbench.metrics import Jacobians, distortion, distortion_of
-from rectbench.reporting.run_folder import Result, Run
+from rectbench.reporting import recall
+from rectbench.reporting.recall import KnownPair
 from rectbench.rigs import Rig
+from rectbench.runs.run import Result, Run
 from rectbench.types import FloatArray
 from rectbench.warps import Rectification
 

@@ -17,12 +17,12 @@ from rectbench.experiments.execution.outcomes import Outcome
 from rectbench.experiments.execution.pool import Job, Workers
 from rectbench.experiments.execution.worker import Limits
 from rectbench.experiments.planning import Plan, Selection, find_report, make_plan
-from rectbench.experiments.run_folder import check_writable, facts_of, table_of, write_run
 from rectbench.experiments.spec import Report
 from rectbench.experiments.tasks import CellTask, PairTask
 from rectbench.pairs.pairs import IMAGES, TRUTH, image_inputs, is_made, truth_inputs
 from rectbench.progress import Progress, progress_for
 from rectbench.registry import is_path
+from rectbench.runs.record import check_writable, facts_of, table_of, write_run
 from rectbench.store.store import Store
 
 RUNS = Path("runs")

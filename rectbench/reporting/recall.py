@@ -13,7 +13,6 @@ import numpy as np
 
 from rectbench.errors import InvalidInput, PoseNotFound
 from rectbench.experiments.execution.cells import cell_inputs, corners_of_board, feature_matches, problem_of
-from rectbench.experiments.run_folder import RUN_FILE
 from rectbench.experiments.tasks import IDENTITY, CellTask, PhotoTask
 from rectbench.images.stereo_pair import StereoPair
 from rectbench.pairs.pairs import image_inputs, load_images, load_truth, placed_rig
@@ -22,6 +21,7 @@ from rectbench.plugins.rectifier import METHODS
 from rectbench.registry import registry
 from rectbench.rendering.truth import Truth
 from rectbench.rigs import Rig
+from rectbench.runs.record import RUN_FILE
 from rectbench.store.keys import digest
 from rectbench.store.store import Store
 from rectbench.types import Matches
