@@ -13,8 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rectbench.errors import InvalidInput, InvalidResult, RectbenchError
-from rectbench.experiments.tasks import AnyPair, CellTask
+from rectbench.experiments.tasks import CellTask
 from rectbench.metrics import Jacobians, distortion, distortion_of
+from rectbench.pairs.spec import PairSpec
 from rectbench.reporting import recall
 from rectbench.reporting.recall import KnownPair
 from rectbench.rigs import Rig
@@ -89,7 +90,7 @@ class _Recalled:
     def __init__(self, folder: Path) -> None:
         self._folder = folder
         self._fitted: dict[Identity, Rectification] = {}
-        self._pair: tuple[AnyPair, KnownPair] | None = None
+        self._pair: tuple[PairSpec, KnownPair] | None = None
 
     @cached_property
     def _tasks(self) -> dict[Identity, CellTask]:

@@ -134,7 +134,7 @@ def test_a_report_of_the_run_is_made_again(run_dir: Path) -> None:
 
 def test_its_tasks_survive_json(folder: Path) -> None:
     task = make_plan(REPORT, data=folder).tasks[0]
-    assert CellTask.from_json(json.loads(json.dumps(task.to_json()))) == task
+    assert CellTask.model_validate(json.loads(json.dumps(task.model_dump(mode="json")))) == task
 
 
 def test_it_resumes_and_an_edited_image_runs_anew(
