@@ -1,4 +1,4 @@
-"""Claims, stated before the run: which column, which method, against whom, and which values would prove it."""
+"""Claims, stated before a run: which column, which method, against whom, within which bounds."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ class Claim(BaseModel):
     """What somebody says, as statements that can be measured, and what each verdict would mean.
 
     >>> quick = Statement(label="fit [s]", metric="fit_s", method="abraham", below=3.0)
-    >>> Claim(name="Time", says="It is quick.", statements=(quick,), because={"held": "It is a formula."}).name
+    >>> Claim(name="Time", says="It is quick.", statements=(quick,), because={"held": "A formula is."}).name
     'Time'
     """
 

@@ -1,4 +1,4 @@
-"""From the names that a report or a user gives to plugins and rigs, and to what finds them in another process."""
+"""Plugins and rigs by the names a report or a user gives them, and what finds them in another process."""
 
 from __future__ import annotations
 

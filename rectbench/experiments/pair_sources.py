@@ -6,7 +6,7 @@ import itertools
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -84,7 +84,7 @@ class Rendered:
     """Whether a run may have scenes and rigs that the report does not name."""
     found: ClassVar[None] = None
 
-    def located(self, report: str, data: str | Path | None) -> Rendered:
+    def located(self, report: str, data: str | Path | None) -> Self:
         """The same; raises InvalidInput for a folder of photographs, which nobody needs."""
         if data is not None:
             raise InvalidInput(f"report {report} renders its pairs; expected no --data")
@@ -155,9 +155,7 @@ class Photographed:
     def located(self, report: str, data: str | Path | None) -> Photographed:
         """The same with the pairs in the folder `data`; raises InvalidInput where there are none."""
         if data is None:
-            raise InvalidInput(
-                f"report {report} takes photographs; expected a folder of them, --data FOLDER"
-            )
+            raise InvalidInput(f"report {report} takes photographs; expected a folder of them, --data FOLDER")
         found = find_photographs(data)
         pairs = tuple((pair.name, pair.calibration.name, AS_CALIBRATED) for pair in found.pairs)
         return Photographed(tuple(replace(part, pairs=pairs) for part in self.parts), found)

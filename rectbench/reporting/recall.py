@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from rectbench.errors import InvalidInput, PoseNotFound
+from rectbench.errors import PoseNotFound
 from rectbench.experiments.execution.cells import cell_inputs, corners_of_board, feature_matches, problem_of
-from rectbench.experiments.tasks import IDENTITY, CellTask
+from rectbench.experiments.tasks import CellTask
 from rectbench.images.stereo_pair import StereoPair
 from rectbench.pairs.pairs import image_inputs, load_images, load_truth, placed_rig
 from rectbench.pairs.spec import PhotographedSpec
@@ -22,7 +18,6 @@ from rectbench.plugins.rectifier import METHODS
 from rectbench.registry import registry
 from rectbench.rendering.truth import Truth
 from rectbench.rigs import Rig
-from rectbench.runs.record import RUN_FILE
 from rectbench.store.keys import digest
 from rectbench.store.store import Store
 from rectbench.types import Matches
@@ -30,21 +25,6 @@ from rectbench.warps import Rectification
 
 SHOWN_MATCHES = 2000
 """True correspondences that pictures choose from."""
-
-
-def read_tasks(run_dir: Path) -> dict[tuple[Any, ...], CellTask]:
-    """The tasks of a run by their identity; look one up with `identity_of(row)`."""
-    try:
-        facts = json.loads((run_dir / RUN_FILE).read_text(encoding="utf-8"))
-        tasks = [CellTask.model_validate(values) for values in facts["cells"]]
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        raise InvalidInput(f"{run_dir / RUN_FILE} tells no plan: {type(error).__name__} {error}") from None
-    return {identity_of(vars(task.cell)): task for task in tasks}
-
-
-def identity_of(row: Mapping[str, Any]) -> tuple[Any, ...]:
-    """The values of a row's identity columns."""
-    return tuple(row[name] for name in IDENTITY)
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,25 +6,25 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
-from typing import Any, Literal, Protocol, TypeVar
+from typing import Literal, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rectbench.errors import InvalidInput, InvalidResult, RectbenchError
-from rectbench.experiments.tasks import CellTask
+from rectbench.experiments.tasks import Cell, CellTask
 from rectbench.metrics import Jacobians, distortion, distortion_of
 from rectbench.pairs.spec import PairSpec
 from rectbench.reporting import recall
 from rectbench.reporting.recall import KnownPair
 from rectbench.rigs import Rig
-from rectbench.runs.run import Result, Run
+from rectbench.runs.record import RUN_FILE
+from rectbench.runs.rows import Row
+from rectbench.runs.run import Run
 from rectbench.types import FloatArray
 from rectbench.warps import Rectification
 
 Side = Literal["left", "right"]
-Identity = tuple[Any, ...]
 Made = TypeVar("Made")
 _FINGERPRINT = "distortion_native"
 _SAME_FIT = 1e-3
@@ -55,14 +55,14 @@ class Sources:
     version : changes with whatever changes those answers while the cell's row stays the same.
     """
 
-    pair: Callable[[Result], KnownPair]
-    rectification: Callable[[Result], Rectification]
+    pair: Callable[[Row], KnownPair]
+    rectification: Callable[[Row], Rectification]
     distortion: Callable[[Rectification, Rig, Side, FloatArray], FloatArray]
-    reconstruction: Callable[[Result], Cloud]
-    version: Callable[[Result], str] = lambda result: ""
+    reconstruction: Callable[[Row], Cloud]
+    version: Callable[[Row], str] = lambda result: ""
 
 
-def attempted(result: Result, make: Callable[[], Made]) -> Made | str:
+def attempted(result: Row, make: Callable[[], Made]) -> Made | str:
     """What `make` gives of a cell, or the reason why its picture is missing."""
     if not result.ok:
         return f"{result.status}: {result.reason}" if result.reason else result.status
@@ -74,7 +74,7 @@ def attempted(result: Result, make: Callable[[], Made]) -> Made | str:
 
 def sources_of(run: Run) -> Sources:
     """The bench's store and the project's own metrics."""
-    recalled = _Recalled(run.folder)
+    recalled = _Recalled(run)
     return Sources(
         pair=recalled.pair,
         rectification=recalled.rectification,
@@ -87,49 +87,49 @@ def sources_of(run: Run) -> Sources:
 class _Recalled:
     """Cells of a finished run: each fitted once, the last pair kept, since several figures show them."""
 
-    def __init__(self, folder: Path) -> None:
-        self._folder = folder
-        self._fitted: dict[Identity, Rectification] = {}
+    def __init__(self, run: Run) -> None:
+        self._run = run
+        self._fitted: dict[Cell, Rectification] = {}
         self._pair: tuple[PairSpec, KnownPair] | None = None
 
     @cached_property
-    def _tasks(self) -> dict[Identity, CellTask]:
-        return recall.read_tasks(self._folder)
+    def _tasks(self) -> dict[Cell, CellTask]:
+        return {task.cell: task for task in self._run.record.cells}
 
-    def _task(self, result: Result) -> CellTask:
-        task = self._tasks.get(recall.identity_of(result.row))
+    def _task(self, result: Row) -> CellTask:
+        task = self._tasks.get(result.cell)
         if task is None:
-            raise InvalidInput(f"{self._folder / 'run.json'} does not plan {result.method} on {result.pair}")
+            file = self._run.folder / RUN_FILE
+            raise InvalidInput(f"{file} does not plan {result.method} on {result.pair}")
         return task
 
-    def pair(self, result: Result) -> KnownPair:
+    def pair(self, result: Row) -> KnownPair:
         task = self._task(result)
         if self._pair is None or self._pair[0] != task.pair:
             self._pair = task.pair, recall.recalled_pair(task)
         return self._pair[1]
 
-    def rectification(self, result: Result) -> Rectification:
-        key = recall.identity_of(result.row)
-        if key not in self._fitted:
+    def rectification(self, result: Row) -> Rectification:
+        if result.cell not in self._fitted:
             rectification = recall.recalled_rectification(self._task(result))
             _require_same(rectification, result)
-            self._fitted[key] = rectification
-        return self._fitted[key]
+            self._fitted[result.cell] = rectification
+        return self._fitted[result.cell]
 
-    def reconstruction(self, result: Result) -> Cloud:
+    def reconstruction(self, result: Row) -> Cloud:
         from rectbench.matching.dense.reconstruction import reconstruct
 
         images = self.pair(result).images
         return reconstruct(self.rectification(result), images.left, images.right)
 
-    def version(self, result: Result) -> str:
+    def version(self, result: Row) -> str:
         try:
             return recall.recalled_version(self._task(result))
         except RectbenchError as error:  # a plugin or a rig that is not on this machine
             return str(error)
 
 
-def _require_same(rectification: Rectification, result: Result) -> None:
+def _require_same(rectification: Rectification, result: Row) -> None:
     """Raise InvalidResult where the new fit is not the one the run measured: a picture must not lie."""
     measured = result.metrics.get(_FINGERPRINT)
     if measured is None:

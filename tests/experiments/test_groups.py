@@ -9,8 +9,8 @@ import pytest
 from pydantic import ValidationError
 
 import rectbench as rb
-from rectbench.experiments.execution.running import run
 from rectbench.experiments.planning import Plan, Selection, make_plan
+from rectbench.runs.making import run
 from tests.experiments.fakes import write_method, write_scene
 
 FISHEYE = rb.Group(

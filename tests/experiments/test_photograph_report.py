@@ -14,11 +14,11 @@ from pydantic import ValidationError
 from scipy.spatial.transform import Rotation
 
 import rectbench as rb
-from rectbench.experiments.execution.running import run
 from rectbench.experiments.planning import make_plan
 from rectbench.experiments.tasks import CellTask
 from rectbench.reporting import write_report
 from rectbench.runs.gating import accept, gate
+from rectbench.runs.making import run
 from rectbench.store.store import STORE_VARIABLE
 from tests.conftest import Shell
 from tests.matching.flat_board import chessboard, seen_board

@@ -136,9 +136,9 @@ def test_all_that_shapes_a_cell_shapes_its_key(tmp_path: Path, monkeypatch: pyte
     write_method(tmp_path, "mine", "x = 1")
     keys.append(_key(**base))
     write_method(tmp_path, "mine")
-    for part in ("pairs", "cells"):
+    for part in ("pairs.pairs", "experiments.execution.cells"):
         with monkeypatch.context() as patch:
-            patch.setattr(ff"{part}.code_digest", lambda *_: "edited")
+            patch.setattr(f"rectbench.{part}.code_digest", lambda *_: "edited")
             keys.append(_key(**base))
         with monkeypatch.context() as patch:
             patch.setattr(f"rectbench.{part}.versions", lambda *_: {"numpy": "1.0"})

@@ -10,10 +10,10 @@ import pytest
 
 import rectbench as rb
 from rectbench.experiments.execution.cells import believed_rig, problem_of
-from rectbench.experiments.execution.running import run
 from rectbench.experiments.planning import make_plan
 from rectbench.pairs.estimating import estimated_pose
 from rectbench.pairs.pairs import placed_rig
+from rectbench.runs.making import run
 from rectbench.store.store import Store
 from tests.experiments.fakes import small_report, write_scene
 

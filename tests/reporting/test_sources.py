@@ -8,7 +8,7 @@ import pytest
 
 from rectbench.errors import InvalidResult
 from rectbench.metrics import distortion
-from rectbench.reporting import recall
+from rectbench.reporting import recall, sources
 from rectbench.reporting.sources import sources_of
 from rectbench.runs.run import Run, read_run
 from tests.reporting.runs import fake_rectification, fake_rig, make_row
@@ -23,10 +23,10 @@ def run_of(write_run: Callable[..., Path], monkeypatch: pytest.MonkeyPatch) -> C
 
     def read(native: float) -> Run:
         row = make_row("street", "t265", "exact", "abraham", distortion_native=native)
-        identity = recall.identity_of(row)
-        monkeypatch.setattr(recall, "read_tasks", lambda folder: {identity: "the task"})
         monkeypatch.setattr(recall, "recalled_rectification", refit)
-        return read_run(write_run([row]))
+        run = read_run(write_run([row]))
+        monkeypatch.setattr(sources._Recalled, "_task", lambda recalled, row: "the task")
+        return run
 
     fits: list[Any] = []
 

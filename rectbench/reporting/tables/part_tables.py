@@ -29,7 +29,8 @@ from rectbench.reporting.tables.tabulation import (
     pair_tables,
     titled,
 )
-from rectbench.runs.run import Result, Run
+from rectbench.runs.rows import Row
+from rectbench.runs.run import Run
 from rectbench.types import FloatArray
 
 ENERGY_KEYS = ("distortion_native", "energy_convex_share")
@@ -55,7 +56,7 @@ def _methods_tables(part: Run) -> Iterator[Table]:
     if is_ranked(part):
         yield from main_tables(part)
         yield distortion_table(part)
-    if part.is_of_photographs and _measures(part, ROW_KEYS):
+    if not part.pair_source.has_truth and _measures(part, ROW_KEYS):
         yield from photographs_row_tables(part)
     elif part.group and _measures(part, ROW_KEYS):
         yield rows_table(part)
@@ -144,7 +145,7 @@ def pose_table(run: Run) -> Table:
         part=run.group,
         name=named(run, "pose"),
         title=titled(run, "Poses estimated from the images"),
-        caption=("Against the calibration" if run.is_of_photographs else "Against the true pose")
+        caption=("Against the true pose" if run.pair_source.has_truth else "Against the calibration")
         + "; averages over seeds, and the median over all. σ is what the estimate believes.",
         headings=(
             Heading("pair", "pair", numeric=False),
@@ -155,7 +156,7 @@ def pose_table(run: Run) -> Table:
     )
 
 
-def _poses(results: Sequence[Result], keys: Sequence[str]) -> list[list[float]]:
+def _poses(results: Sequence[Row], keys: Sequence[str]) -> list[list[float]]:
     """The columns of each estimate, once."""
     estimates = {(r.pair, r.pose): r for r in results if r.ok and keys[0] in r.metrics}
     return [[r.metrics.get(key, math.nan) for key in keys] for r in estimates.values()]
@@ -194,7 +195,7 @@ def timing_table(run: Run) -> Table:
     )
 
 
-def _timing_row(results: Sequence[Result], method: str, stages: Sequence[str]) -> tuple[Entry, ...]:
+def _timing_row(results: Sequence[Row], method: str, stages: Sequence[str]) -> tuple[Entry, ...]:
     found = [[r.metrics[key] for r in results if key in r.metrics] for key in stages]
     return words(method), *(_seconds(sum(values) / len(values) if values else None) for values in found)
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from typing import Any
+from collections.abc import Iterator
 
 from rectbench.metrics.catalogue import column
 from rectbench.reporting.tables.labels import one_line, pair_labels
 from rectbench.reporting.tables.numbers import MISSING
 from rectbench.reporting.tables.table import Heading, Section, Table, number, words
+from rectbench.runs.record import FoundPhotographs
 from rectbench.runs.run import Run
 
 COUNTED = ("pose_inliers", "row_error_features_matches", "row_error_board_points")
@@ -19,17 +19,16 @@ TROUBLE = ("contradiction", "no_features")
 
 def photograph_tables(run: Run) -> Iterator[Table]:
     """The pairs with their files, then the files of the folder that no pair has; none for rendered pairs."""
-    found = run.facts.get("photographs")
-    if not isinstance(found, Mapping):
+    found = run.record.photographs
+    if found is None:
         return
     yield _pairs_table(run, found)
-    if found.get("left_out"):
+    if found.left_out:
         yield _left_out_table(found)
 
 
-def _pairs_table(run: Run, found: Mapping[str, Any]) -> Table:
-    files = {(pair["name"], pair["rig"]): pair for pair in found["pairs"]}
-    remarks = found.get("remarks", {})
+def _pairs_table(run: Run, found: FoundPhotographs) -> Table:
+    files = {(pair.name, pair.rig): pair for pair in found.pairs}
     keys = [key for key in COUNTED if key in run.metrics]
     rows = []
     for place, label in pair_labels(run).items():
@@ -38,12 +37,12 @@ def _pairs_table(run: Run, found: Mapping[str, Any]) -> Table:
         # A method that shows less of the view has fewer of them to be measured by.
         counts = [max((r.metrics[key] for r in results if key in r.metrics), default=None) for key in keys]
         pair = files[place[0], place[1]]
-        said = [*(told[name] for name in TROUBLE if name in told), *remarks.get(place[1], [])]
+        said = [*(told[name] for name in TROUBLE if name in told), *found.remarks.get(place[1], ())]
         rows.append(
             (
                 words(one_line(label)),
-                words(pair["left"]),
-                words(pair["right"]),
+                words(pair.left),
+                words(pair.right),
                 *(number(count, column(key)) for count, key in zip(counts, keys, strict=True)),
                 words(told.get("board", MISSING)),
                 words("; ".join(said)),
@@ -67,8 +66,8 @@ def _pairs_table(run: Run, found: Mapping[str, Any]) -> Table:
     )
 
 
-def _left_out_table(found: Mapping[str, Any]) -> Table:
-    rows = tuple((words(out["path"]), words(out["reason"])) for out in found["left_out"])
+def _left_out_table(found: FoundPhotographs) -> Table:
+    rows = tuple((words(out.path), words(out.reason)) for out in found.left_out)
     return Table(
         kind="left-out",
         name="left-out",

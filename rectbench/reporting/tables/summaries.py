@@ -10,7 +10,7 @@ import numpy as np
 
 from rectbench.metrics.catalogue import RANKING_KEY, column
 from rectbench.plugins.metric import Column
-from rectbench.runs.run import Result
+from rectbench.runs.rows import Row
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ class Summary:
         return self.failed == 0
 
 
-def summarise(method: str, results: Sequence[Result], keys: Iterable[str]) -> Summary:
+def summarise(method: str, results: Sequence[Row], keys: Iterable[str]) -> Summary:
     """Average the `keys` over the ok cells of `results`, each key as its column says."""
     ok = [r for r in results if r.ok]
     averages = {key: _average(column(key), [r.metrics[key] for r in ok if key in r.metrics]) for key in keys}

@@ -25,7 +25,8 @@ from rectbench.reporting.page.run_facts import part_title, wanted_kinds
 from rectbench.reporting.tables.numbers import MISSING, three_digits
 from rectbench.reporting.tables.summaries import Summary, ranked, summarise
 from rectbench.reporting.tables.table import Entry, Heading, Section, Table, number, with_best
-from rectbench.runs.run import Result, Run
+from rectbench.runs.rows import Row
+from rectbench.runs.run import Run
 
 OK_HEADING = Heading("ok", "ok", meaning="Cells measured of cells planned.")
 NOT_OK_HEADING = Heading("not ok", "not_ok", numeric=False, meaning="How the other cells ended.")
@@ -57,10 +58,10 @@ def main_tables(run: Run) -> list[Table]:
 
 
 def methods_part(part: Run) -> Run | None:
-    """A part without the random starts that are studied in it: these are no methods to compare."""
+    """A part without the starts that are studied in it: these are no methods to compare."""
     if "starts" not in wanted_kinds(part):
         return part
-    others = [r for r in part.results if not r.is_random_start]
+    others = [r for r in part.results if not r.options]
     return part.only(others) if others else None
 
 
@@ -71,7 +72,8 @@ def is_ranked(run: Run) -> bool:
 
 def _main_table(run: Run, pose: str) -> Table:
     results = run.select(pose=pose)
-    keys = [key for key in (PHOTOGRAPH_KEYS if run.is_of_photographs else MAIN_KEYS) if key in run.metrics]
+    shown = MAIN_KEYS if run.pair_source.has_truth else PHOTOGRAPH_KEYS
+    keys = [key for key in shown if key in run.metrics]
     methods = [m for m in run.methods if any(r.method == m for r in results)]
     summaries = ranked(summarise(m, [r for r in results if r.method == m], keys) for m in methods)
     failing = any(not s.complete for s in summaries)
@@ -95,7 +97,7 @@ def _main_table(run: Run, pose: str) -> Table:
         )
         for i, s in enumerate(summaries)
     )
-    pairs = _photographs_text(results) if run.is_of_photographs else _pairs_text(results)
+    pairs = _pairs_text(results) if run.pair_source.has_truth else _photographs_text(results)
     caption = f"Averages over {pairs}, ranked by log distortion."
     return Table(
         kind="main",
@@ -130,7 +132,7 @@ def distortion_table(run: Run) -> Table:
     )
 
 
-def methods_table(run: Run, keys: Sequence[str], sections: Mapping[str, Sequence[Result]]) -> Table:
+def methods_table(run: Run, keys: Sequence[str], sections: Mapping[str, Sequence[Row]]) -> Table:
     """Averages of the `keys` that the run has, a row a method, in a section of results each."""
     keys = [key for key in keys if key in run.metrics]
     failing = any(not r.ok for results in sections.values() for r in results)
@@ -155,7 +157,7 @@ def methods_table(run: Run, keys: Sequence[str], sections: Mapping[str, Sequence
 
 
 def _method_rows(
-    run: Run, keys: Sequence[str], results: Sequence[Result], failing: bool
+    run: Run, keys: Sequence[str], results: Sequence[Row], failing: bool
 ) -> tuple[tuple[Entry, ...], ...]:
     summaries = [
         summarise(m, [r for r in results if r.method == m], keys)
@@ -190,7 +192,7 @@ def pair_tables(run: Run) -> list[Table]:
     return tables
 
 
-def _pair_table(run: Run, scene: str, rig: str, results: Sequence[Result]) -> Table:
+def _pair_table(run: Run, scene: str, rig: str, results: Sequence[Row]) -> Table:
     methods = [m for m in run.methods if any(r.method == m for r in results)]
     sections = []
     for motion, pose, seed in dict.fromkeys((r.motion, r.pose, r.seed) for r in results):
@@ -218,7 +220,7 @@ def _pair_table(run: Run, scene: str, rig: str, results: Sequence[Result]) -> Ta
     )
 
 
-def _metric_row(shown_as: Column, present: Sequence[Result | None]) -> tuple[Entry, ...]:
+def _metric_row(shown_as: Column, present: Sequence[Row | None]) -> tuple[Entry, ...]:
     entries = [
         number(r.metrics.get(shown_as.key), shown_as) if r is not None and r.ok else Entry(MISSING)
         for r in present
@@ -227,7 +229,7 @@ def _metric_row(shown_as: Column, present: Sequence[Result | None]) -> tuple[Ent
     return head, *with_best(entries, shown_as, [True] * len(entries))
 
 
-def _note_row(name: str, present: Sequence[Result | None]) -> tuple[Entry, ...]:
+def _note_row(name: str, present: Sequence[Row | None]) -> tuple[Entry, ...]:
     """What methods say of their own answers: focal lengths, energies, warnings."""
     values = [None if r is None else r.notes.get(name) for r in present]
     return Entry(f"note: {name.replace('_', ' ')}", f"note:{name}"), *map(_note_entry, values)
@@ -239,7 +241,7 @@ def _note_entry(value: Any) -> Entry:
     return Entry(MISSING) if value is None else Entry(str(value), str(value))
 
 
-def _status_entry(result: Result | None) -> Entry:
+def _status_entry(result: Row | None) -> Entry:
     if result is None:
         return Entry(MISSING)
     return Entry(result.status, result.status, failed=not result.ok)
@@ -282,7 +284,7 @@ def _ok_entry(summary: Summary) -> Entry:
     return Entry(text, text, failed=not summary.complete)
 
 
-def _not_ok_entry(summary: Summary, results: Sequence[Result]) -> Entry:
+def _not_ok_entry(summary: Summary, results: Sequence[Row]) -> Entry:
     ended = [r.status for r in results if r.method == summary.method and not r.ok]
     text = ", ".join(f"{ended.count(status)} {status}" for status in dict.fromkeys(ended))
     return Entry(text or MISSING, text, failed=bool(text))
@@ -302,7 +304,7 @@ def _averaged_field(summaries: Sequence[Summary], key: str) -> list[Entry]:
     return with_best(entries, shown_as, eligible)
 
 
-def _pairs_text(results: Sequence[Result]) -> str:
+def _pairs_text(results: Sequence[Row]) -> str:
     """How many pairs of which grid, times the seeds where each pair has them all."""
     pairs, places, seeds = (len({getattr(r, of) for r in results}) for of in ("pair", "place", "seed"))
     if seeds > 1 and pairs == places * seeds:
@@ -310,13 +312,13 @@ def _pairs_text(results: Sequence[Result]) -> str:
     return f"{counted(pairs, 'pair')} ({_grid_text(results, ('motion', 'seed'))})"
 
 
-def _photographs_text(results: Sequence[Result]) -> str:
+def _photographs_text(results: Sequence[Row]) -> str:
     """How many pairs of how many rigs."""
     pairs, rigs = (len({getattr(r, of) for r in results}) for of in ("pair", "rig"))
     return f"{counted(pairs, 'pair')} of photographs ({counted(rigs, 'rig')})"
 
 
-def _grid_text(results: Sequence[Result], beside: Sequence[str]) -> str:
+def _grid_text(results: Sequence[Row], beside: Sequence[str]) -> str:
     counts = {name: len({getattr(r, name) for r in results}) for name in ("scene", "rig", *beside)}
     return ", ".join(counted(n, name) for name, n in counts.items() if n > 1 or name not in beside)
 
