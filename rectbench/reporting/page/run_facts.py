@@ -33,10 +33,10 @@ class Fact:
 
 def run_facts(run: Run) -> list[Fact]:
     """The facts worth a line, then the versions of libraries; run.json itself is shown beside them."""
-    told = {label: getattr(run.record, name) for name, label in _LABELS.items()}
-    facts = [Fact(label, _text(value)) for label, value in told.items() if value not in (None, "", ())]
+    told = {**vars(run.record), "wall_s": f"{run.record.wall_s:.1f} s"}
+    facts = [Fact(label, _text(told[name])) for name, label in _LABELS.items() if told[name] not in (None, ())]
     present = [f"{name} {version}" for name, version in run.record.versions.items() if version is not None]
-    return [*facts, Fact("Took", f"{run.record.wall_s:.1f} s"), Fact("Versions", ", ".join(present))]
+    return [*facts, Fact("Versions", ", ".join(present))]
 
 
 KINDS = ("bars", "scatter", "pairs", "maps", "energy", "starts", "squares", "clouds", "timing")
