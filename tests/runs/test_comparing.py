@@ -7,10 +7,10 @@ import pandas as pd
 import pytest
 
 import rectbench as rb
-from rectbench.runs.comparing import compare
 from rectbench.experiments.execution.outcomes import Outcome
-from rectbench.experiments.planning import make_plan
 from rectbench.experiments.execution.running import Execution
+from rectbench.experiments.planning import make_plan
+from rectbench.runs.comparing import compare
 from rectbench.runs.record import RunRecord, table_of, write_run
 from tests.experiments.fakes import small_report
 

@@ -10,9 +10,9 @@ import pytest
 
 import rectbench as rb
 from rectbench.experiments.execution.outcomes import Outcome
-from rectbench.runs.gating import Tolerance, accept, accepted_path, gate
-from rectbench.experiments.planning import make_plan
 from rectbench.experiments.execution.running import Execution
+from rectbench.experiments.planning import make_plan
+from rectbench.runs.gating import Tolerance, accept, accepted_path, gate
 from rectbench.runs.record import RunRecord, table_of, write_run
 from tests.experiments.fakes import small_report, write_report_file
 

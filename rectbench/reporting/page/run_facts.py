@@ -34,7 +34,8 @@ class Fact:
 def run_facts(run: Run) -> list[Fact]:
     """The facts worth a line, then the versions of libraries; run.json itself is shown beside them."""
     told = {**vars(run.record), "wall_s": f"{run.record.wall_s:.1f} s"}
-    facts = [Fact(label, _text(told[name])) for name, label in _LABELS.items() if told[name] not in (None, ())]
+    shown = {label: told[name] for name, label in _LABELS.items() if told[name] not in (None, ())}
+    facts = [Fact(label, _text(value)) for label, value in shown.items()]
     present = [f"{name} {version}" for name, version in run.record.versions.items() if version is not None]
     return [*facts, Fact("Versions", ", ".join(present))]
 
