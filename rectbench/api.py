@@ -16,7 +16,7 @@ from rectbench.calibrations.reading import RigSource
 from rectbench.errors import InvalidInput
 from rectbench.matching.features.matches import RATIO
 from rectbench.matching.pose.estimate import WORKING_PIXELS, PoseEstimate, pose_from_images
-from rectbench.pairs.pairs import build_world, placed, render_seed
+from rectbench.pairs.rendering import placed, render_seed
 from rectbench.plugins.fitting import checked_options, fit
 from rectbench.plugins.rectifier import METHODS, pose_problem
 from rectbench.plugins.scene import SCENES
@@ -239,11 +239,10 @@ def render(
     from rectbench.rendering.pair import render_pair
 
     found = registry(SCENES).get(scene)
-    source = str(Path(scene).resolve()) if is_path(scene) else str(scene)
     calibrated = rig if isinstance(rig, Rig) else load_rig(rig)
     true_rig = placed(calibrated, found.name, motion, _checked_seed(seed), _checked_width(image_width))
     noise = render_seed(found.name, calibrated.name, motion, seed)
-    return render_pair(build_world(source, seed), true_rig, seed=noise, spp=spp, quality=quality)
+    return render_pair(found.value.build(seed), true_rig, seed=noise, spp=spp, quality=quality)
 
 
 def export_dataset(
