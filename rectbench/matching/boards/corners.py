@@ -1,6 +1,6 @@
 """Corners of a calibration board that both images show, matched by the board itself.
 
-They are the matches to trust: the board says which corner is which, so that none is wrong, and a corner is
+They are the matches to trust: the board tells which corner is which, so that none is wrong, and a corner is
 found to a few hundredths of a pixel. On boards rendered through perspective and fisheye lenses with noise,
 `cv2.cornerSubPix` is off by 0.02 to 0.06 px (RMS of a coordinate), without a common shift. OpenCV's own
 chessboard corners, from which the search starts here, are off by up to half a pixel under a fisheye lens.
@@ -24,7 +24,7 @@ from rectbench.types import FloatArray, Matches
 LEAST_TAGS = 4
 """Tags seen in both images; of fewer, a chance pattern may be one."""
 NEIGHBOURS, AGREEMENT_STEPS = 12, 10
-"""Corners about a tag's corner that say where it should be, and steps of the robust fit to them."""
+"""Neighbours of a tag's corner that predict its place, and steps of the robust fit to them."""
 AGREEING_PX, WITHIN_MEDIANS = 0.5, 4.0
 """A corner farther off than both, the latter times the median, is not the same in both images."""
 BEGINNINGS = ((4, 4), (6, 5))
@@ -94,7 +94,7 @@ def _tag_matches(left: Grey, right: Grey) -> BoardMatches | None:
 
 
 def _agreeing(matches: Matches) -> Matches:
-    """The matches [N, 2] that lie where those about them say, by the affine map from left to right there.
+    """The matches [N, 2] that lie where their neighbours predict, by a local affine map from left to right.
 
     A tag's corner may be mistaken for one of the square beside it, in one image and not in the other.
     """

@@ -1,4 +1,4 @@
-"""Feature matches that agree with one another, whatever a calibration says."""
+"""Feature matches that agree with one another, whatever the calibration."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import numpy as np
 from rectbench.cameras import Camera
 from rectbench.errors import PoseNotFound
 from rectbench.matching.features.matches import match_features
-from rectbench.matching.pose.epipolar import Pose, RayMatches, essential, possible, sampson_px
+from rectbench.matching.pose.epipolar import Pose, RayMatches, essential, in_front, sampson_px
 from rectbench.matching.pose.estimate import (
     FINEST_PX,
     LEAST_MATCHES,
@@ -15,12 +15,12 @@ from rectbench.matching.pose.estimate import (
     PoseEstimate,
     pose_from_images,
 )
-from rectbench.matching.pose.evidence import accompanied
+from rectbench.matching.pose.evidence import depth_consistent
 from rectbench.types import Images, Matches
 
-WORKING_PIXELS = 2_100_000
+SCORING_PIXELS = 2_100_000
 """Features of a larger image are found at this size: of a film camera's image they would take gigabytes."""
-PER_CELL = 24
+SCORING_PER_CELL = 24
 """Matches kept in one of some 170 cells: a couple of thousand, spread over the view."""
 
 
@@ -40,12 +40,12 @@ def agreeing_matches(estimate: PoseEstimate, left: Camera, right: Camera, images
     They lie ahead of both cameras, each near others of a like distance. Raises PoseNotFound for too few.
     """
     pose = Pose(estimate.R_right_left, estimate.direction_right_left)
-    matches = match_features(*images, working_pixels=WORKING_PIXELS, per_cell=PER_CELL)
+    matches = match_features(*images, working_pixels=SCORING_PIXELS, per_cell=SCORING_PER_CELL)
     seen, _ = RayMatches.of(left, right, matches)
     limit_px = WITHIN_DEVIATIONS * max(estimate.noise_px, FINEST_PX)
     near = np.abs(sampson_px(seen.terms(), essential(pose))[0]) <= limit_px
-    kept = seen[near & possible(pose, seen, limit_px)]
-    kept = kept[accompanied(pose, kept, limit_px)]
+    kept = seen[near & in_front(pose, seen, limit_px)]
+    kept = kept[depth_consistent(pose, kept, limit_px)]
     if len(kept) < LEAST_MATCHES:
         raise PoseNotFound(f"{len(kept)} matches fit together; expected at least {LEAST_MATCHES}")
     return kept.pixels
