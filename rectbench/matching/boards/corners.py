@@ -52,7 +52,15 @@ WINDOW, LEAST_WINDOW, MOST_WINDOW = 0.3, 2, 10
 
 @dataclass(frozen=True, eq=False)
 class BoardMatches:
-    """The corners of one board in both images."""
+    """The corners of one board in both images.
+
+    >>> import numpy as np
+    >>> import rectbench as rb
+    >>> corners = np.array([[10.0, 20.0], [30.0, 20.0]])
+    >>> found = rb.BoardMatches(rb.Matches(corners, corners - [5, 0]), "chessboard 2x1")
+    >>> (found.matches.left - found.matches.right)[:, 0]
+    array([5., 5.])
+    """
 
     matches: Matches
     """[N, 2] each."""
@@ -67,6 +75,16 @@ def board_matches(left: NDArray[np.generic], right: NDArray[np.generic]) -> Boar
     images with its outer squares; where turning it by 180° changes nothing, the images are taken to be
     upright alike. Of tags (AprilTag 36h11, with Kalibr's border, too, and ArUco) four have to be in both
     images. Raises InvalidInput for arrays that are no images.
+
+    >>> import numpy as np
+    >>> import rectbench as rb
+    >>> squares = np.kron(np.indices((7, 9)).sum(axis=0) % 2, np.ones((16, 16)))
+    >>> image = np.pad(np.uint8(255 * squares), 24, constant_values=255)
+    >>> found = rb.board_matches(image, np.roll(image, -5, axis=1))
+    >>> found.kind
+    'chessboard 8x6'
+    >>> np.ptp(found.matches.left - found.matches.right, axis=0).round(2)
+    array([0., 0.])
     """
     images = grey8(left, "left"), grey8(right, "right")
     return _tag_matches(*images) or _chessboard_matches(*images)

@@ -30,6 +30,16 @@ def consistent_matches(left: Camera, right: Camera, images: Images, *, seed: int
     Of the calibration only the cameras are used. A wrong pose in it filters nothing away, so that the row
     error it causes can be measured with these matches; a wrong lens shows as far as no pose makes up for
     it. Raises InvalidInput and PoseNotFound as `pose_from_images` does.
+
+    >>> import cv2, numpy as np
+    >>> import rectbench as rb
+    >>> noise = np.random.default_rng(0).integers(0, 256, (120, 160), np.uint8)
+    >>> left = cv2.normalize(cv2.GaussianBlur(noise, (0, 0), 2), None, 0, 255, cv2.NORM_MINMAX)
+    >>> right = np.concatenate([np.roll(left[:60], -6, axis=1), np.roll(left[60:], -12, axis=1)])
+    >>> camera = rb.Camera("pinhole", (160, 120), {"fx": 120, "fy": 120, "cx": 79.5, "cy": 59.5})
+    >>> matches = rb.consistent_matches(camera, camera, rb.Images(left, right))  # of two walls
+    >>> bool(np.abs(matches.left[:, 1] - matches.right[:, 1]).max() < 0.1)
+    True
     """
     return agreeing_matches(pose_from_images(left, right, images, seed=seed), left, right, images)
 

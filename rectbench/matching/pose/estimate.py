@@ -64,6 +64,17 @@ class PoseEstimate:
     """The pose of the right camera relative to the left one as the images show it: X_right = R X_left + t.
 
     The length of t cannot be seen; `rig` takes it from the calibration.
+
+    >>> import cv2, numpy as np
+    >>> import rectbench as rb
+    >>> noise = np.random.default_rng(0).integers(0, 256, (120, 160), np.uint8)
+    >>> left = cv2.normalize(cv2.GaussianBlur(noise, (0, 0), 2), None, 0, 255, cv2.NORM_MINMAX)
+    >>> right = np.concatenate([np.roll(left[:60], -6, axis=1), np.roll(left[60:], -12, axis=1)])
+    >>> camera = rb.Camera("pinhole", (160, 120), {"fx": 120, "fy": 120, "cx": 79.5, "cy": 59.5})
+    >>> rig = rb.Rig(camera, camera, np.eye(3), [-0.1, 0, 0])
+    >>> estimate = rb.estimate_pose((left, right), rig)
+    >>> estimate.motion, max(estimate.difference_deg(rig)) < 0.1
+    ('sideways', True)
     """
 
     R_right_left: FloatArray
