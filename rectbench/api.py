@@ -122,10 +122,10 @@ def rectify_images(
     is raised.
     """
     from rectbench.applications.rectified_images import Wanted, first_readable, rectify_images
-    from rectbench.experiments.run_folder import check_writable
     from rectbench.matching.pose.uncalibrated import uncalibrated
     from rectbench.pairs.finding.image_pairs import image_pairs
     from rectbench.progress import progress_for
+    from rectbench.runs.record import check_writable
 
     check_writable(Path(out))
     wanted = Wanted(
@@ -276,8 +276,8 @@ def export_dataset(
     Unsupported where the method cannot serve the rig, Unavailable where this machine cannot render.
     """
     from rectbench.applications.export.exporting import Export, export_dataset
-    from rectbench.experiments.run_folder import check_writable
     from rectbench.progress import progress_for
+    from rectbench.runs.record import check_writable
 
     check_writable(Path(out))
     checked = [_checked_seed(seed) for seed in dict.fromkeys(seeds)]

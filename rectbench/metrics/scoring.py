@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from rectbench.metrics.coverage import coverage
 from rectbench.metrics.distortion import PROTOCOLS, distortion_of, log_distortion
-from rectbench.metrics.jacobians import Jacobians
 from rectbench.metrics.order import order
 from rectbench.metrics.rows import row_error
 from rectbench.metrics.sampling import every_pixel
 from rectbench.rigs import Rig
 from rectbench.types import Matches
 from rectbench.warps import Rectification
+from rectbench.warps.jacobians import Jacobians
 
 BOARD_ERRORS = ("mean", "median", "p95", "source_mean")
 """What is told of the row errors of a board's corners."""

@@ -9,10 +9,10 @@ from pathlib import Path
 import numpy as np
 
 from rectbench.errors import PoseNotFound
-from rectbench.experiments.tasks import AnyPair
 from rectbench.images.stereo_pair import StereoPair
 from rectbench.matching import PoseEstimate, pose_from_images
 from rectbench.pairs.pairs import image_inputs, load_images, placed_rig
+from rectbench.pairs.spec import PairSpec
 from rectbench.rigs import Rig
 from rectbench.store.keys import Inputs, code_digest, derived_seed, versions
 from rectbench.store.store import Store
@@ -23,7 +23,7 @@ ESTIMATING_PACKAGES = ("numpy", "scipy", "opencv-contrib-python-headless")
 NUMBERS, REASON = "pose.npz", "reason.json"
 
 
-def estimate_from_images(pair: AnyPair, images: StereoPair) -> PoseEstimate:
+def estimate_from_images(pair: PairSpec, images: StereoPair) -> PoseEstimate:
     """The estimate, made anew from the pair's images; raises PoseNotFound where they tell none."""
     rig = placed_rig(pair)
     seed = derived_seed("consensus", pair.scene, pair.rig, pair.motion, pair.seed)
@@ -32,7 +32,7 @@ def estimate_from_images(pair: AnyPair, images: StereoPair) -> PoseEstimate:
 
 
 @lru_cache(maxsize=1)
-def estimated_pose(pair: AnyPair, store: Store) -> PoseEstimate:
+def estimated_pose(pair: PairSpec, store: Store) -> PoseEstimate:
     """The estimate of a pair, from the store where it is known; all methods of a pair share it.
 
     Raises PoseNotFound, with the reason, where the images tell no pose.
@@ -72,7 +72,7 @@ def calibration_columns(estimate: PoseEstimate, calibrated: Rig) -> dict[str, fl
     return {name.replace("_error_deg", "_difference_deg"): value for name, value in columns.items()}
 
 
-def _inputs(pair: AnyPair) -> Inputs:
+def _inputs(pair: PairSpec) -> Inputs:
     return {
         **image_inputs(pair),
         "estimating_code": code_digest(__name__),

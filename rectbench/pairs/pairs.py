@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING
 
 from rectbench.calibrations import load_rig
 from rectbench.errors import Unavailable, UnknownName
-from rectbench.experiments.tasks import AnyPair, PairTask, PhotoTask
 from rectbench.images.stereo_pair import StereoPair
 from rectbench.pairs.photo_pairs import calibrated_rig, calibration_inputs, photo_inputs, read_photographs
 from rectbench.pairs.rig_numbers import rig_numbers
+from rectbench.pairs.spec import PairSpec, PhotographedSpec, RenderedSpec
 from rectbench.plugins.scene import SCENES
 from rectbench.registry import registry
 from rectbench.rendering.truth import Truth
@@ -32,9 +32,9 @@ TRUTH, IMAGES = "truth", "images"
 RENDERING_PACKAGES = ("numpy", "scipy", "opencv-contrib-python-headless", "mitsuba", "drjit")
 
 
-def placed_rig(pair: AnyPair) -> Rig:
+def placed_rig(pair: PairSpec) -> Rig:
     """The true rig of a pair; of photographs the calibrated one."""
-    if isinstance(pair, PhotoTask):
+    if isinstance(pair, PhotographedSpec):
         return calibrated_rig(pair)
     return placed(load_rig(pair.rig_source), pair.scene, pair.motion, pair.seed, pair.image_width)
 
@@ -56,9 +56,9 @@ def render_seed(scene: str, rig: str, motion: str, seed: int) -> int:
     return derived_seed("render", scene, rig, motion, seed)
 
 
-def truth_inputs(pair: AnyPair) -> Inputs:
+def truth_inputs(pair: PairSpec) -> Inputs:
     """All that shapes the truth of a pair; of photographs the calibration, which stands in its place."""
-    if isinstance(pair, PhotoTask):
+    if isinstance(pair, PhotographedSpec):
         return calibration_inputs(pair)
     return {
         "scene": pair.scene,
@@ -72,23 +72,23 @@ def truth_inputs(pair: AnyPair) -> Inputs:
     }
 
 
-def image_inputs(pair: AnyPair) -> Inputs:
+def image_inputs(pair: PairSpec) -> Inputs:
     """All that shapes the images of a pair."""
-    if isinstance(pair, PhotoTask):
+    if isinstance(pair, PhotographedSpec):
         return photo_inputs(pair)
     return {**truth_inputs(pair), "quality": pair.quality, "spp": pair.spp}
 
 
-def is_made(pair: AnyPair, store: Store) -> bool:
+def is_made(pair: PairSpec, store: Store) -> bool:
     """Whether the store has all that is asked of the pair, its files unchecked."""
-    if isinstance(pair, PhotoTask):
+    if isinstance(pair, PhotographedSpec):
         return True
     return (not pair.truth or store.has(TRUTH, truth_inputs(pair))) and (
         not pair.images or store.has(IMAGES, image_inputs(pair))
     )
 
 
-def make_pair(pair: PairTask, store: Store) -> None:
+def make_pair(pair: RenderedSpec, store: Store) -> None:
     """Render what is asked of the pair and the store lacks; one process at a time makes one pair."""
     with store.making(TRUTH, truth_inputs(pair)):
         truth = pair.truth and store.read(TRUTH, truth_inputs(pair)) is None
@@ -98,19 +98,19 @@ def make_pair(pair: PairTask, store: Store) -> None:
             give_memory_back()
 
 
-def load_truth(pair: PairTask, store: Store) -> Truth:
+def load_truth(pair: RenderedSpec, store: Store) -> Truth:
     """The truth of a pair, made first where the store lacks it."""
     return Truth.load(_folder(TRUTH, pair, store) / "truth.npz")
 
 
-def load_images(pair: AnyPair, store: Store) -> StereoPair:
+def load_images(pair: PairSpec, store: Store) -> StereoPair:
     """The images of a pair, made first where the store lacks them; photographs are read from their files."""
-    if isinstance(pair, PhotoTask):
+    if isinstance(pair, PhotographedSpec):
         return read_photographs(pair)
     return StereoPair.load(_folder(IMAGES, pair, store))
 
 
-def _folder(kind: str, pair: PairTask, store: Store) -> Path:
+def _folder(kind: str, pair: RenderedSpec, store: Store) -> Path:
     inputs = truth_inputs(pair) if kind == TRUTH else image_inputs(pair)
     folder = store.read(kind, inputs)
     if folder is None:
@@ -121,7 +121,7 @@ def _folder(kind: str, pair: PairTask, store: Store) -> Path:
     return folder
 
 
-def _render(pair: PairTask, store: Store, *, truth: bool, images: bool) -> None:
+def _render(pair: RenderedSpec, store: Store, *, truth: bool, images: bool) -> None:
     stage, rig = set_stage(pair.scene_source, pair.seed, pair.quality), placed_rig(pair)
     if truth:
         exact = stage.survey(rig)

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from rectbench.experiments.tasks import PhotoTask
 from rectbench.images.reading import read_images, rgb8
 from rectbench.images.stereo_pair import StereoPair
 from rectbench.pairs.finding.found_calibrations import Calibration
 from rectbench.pairs.rig_numbers import rig_numbers
+from rectbench.pairs.spec import PhotographedSpec
 from rectbench.rigs import Rig
 from rectbench.store.keys import Inputs, code_digest, file_digest, versions
 
 READING_PACKAGES = ("numpy", "scipy", "opencv-contrib-python-headless")
 
 
-def calibrated_rig(pair: PhotoTask) -> Rig:
+def calibrated_rig(pair: PhotographedSpec) -> Rig:
     """The rig as its calibration files state it."""
     files = tuple(map(Path, pair.calibration))
     return Calibration(
@@ -29,7 +29,7 @@ def calibrated_rig(pair: PhotoTask) -> Rig:
     ).rig()
 
 
-def calibration_inputs(pair: PhotoTask) -> Inputs:
+def calibration_inputs(pair: PhotographedSpec) -> Inputs:
     """All that shapes the calibrated rig, and what random numbers of the pair are named after."""
     return {
         "photographs_of": pair.scene,
@@ -40,12 +40,12 @@ def calibration_inputs(pair: PhotoTask) -> Inputs:
     }
 
 
-def photo_inputs(pair: PhotoTask) -> Inputs:
+def photo_inputs(pair: PhotographedSpec) -> Inputs:
     """All that shapes the images, the bytes of their files among it: an edited image is another one."""
     return {**calibration_inputs(pair), "images": [_digest(pair.left), _digest(pair.right)]}
 
 
-def read_photographs(pair: PhotoTask) -> StereoPair:
+def read_photographs(pair: PhotographedSpec) -> StereoPair:
     """The two images, 8 bits of RGB each; InvalidInput for what is no image, or not of its camera's size."""
     images = read_images(pair.left, pair.right)
     photographs = StereoPair(rgb8(images.left, "left"), rgb8(images.right, "right"))

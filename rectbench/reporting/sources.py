@@ -13,12 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rectbench.errors import InvalidInput, InvalidResult, RectbenchError
-from rectbench.experiments import recall
-from rectbench.experiments.recall import KnownPair
-from rectbench.experiments.tasks import AnyPair, CellTask
+from rectbench.experiments.tasks import CellTask
 from rectbench.metrics import Jacobians, distortion, distortion_of
-from rectbench.reporting.run_folder import Result, Run
+from rectbench.pairs.spec import PairSpec
+from rectbench.reporting import recall
+from rectbench.reporting.recall import KnownPair
 from rectbench.rigs import Rig
+from rectbench.runs.run import Result, Run
 from rectbench.types import FloatArray
 from rectbench.warps import Rectification
 
@@ -89,7 +90,7 @@ class _Recalled:
     def __init__(self, folder: Path) -> None:
         self._folder = folder
         self._fitted: dict[Identity, Rectification] = {}
-        self._pair: tuple[AnyPair, KnownPair] | None = None
+        self._pair: tuple[PairSpec, KnownPair] | None = None
 
     @cached_property
     def _tasks(self) -> dict[Identity, CellTask]:

@@ -26,7 +26,7 @@ def test_quick_is_four_scenes_three_rigs_two_poses_five_methods() -> None:
 
 def test_a_task_survives_json() -> None:
     for task in make_plan(find_report("quick")).tasks[:7]:
-        assert CellTask.from_json(json.loads(json.dumps(task.to_json()))) == task
+        assert CellTask.model_validate(json.loads(json.dumps(task.model_dump(mode="json")))) == task
 
 
 def test_a_selection_runs_in_the_place_of_the_reports_own_or_beside_it(tmp_path: Path) -> None:

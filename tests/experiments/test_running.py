@@ -17,7 +17,7 @@ import pytest
 
 import rectbench as rb
 from rectbench.experiments.execution.running import run
-from rectbench.experiments.run_folder import PROMISED, read_results
+from rectbench.runs.record import PROMISED, read_results
 from rectbench.store.store import STORE_VARIABLE, Store
 from tests.experiments.fakes import FIELDS, small_report, write_method, write_scene
 

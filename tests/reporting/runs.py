@@ -13,11 +13,11 @@ import numpy as np
 import pandas as pd
 
 from rectbench.cameras import Camera
-from rectbench.experiments.recall import KnownPair
 from rectbench.images.stereo_pair import StereoPair
 from rectbench.metrics import distortion
 from rectbench.rendering.truth import Truth
 from rectbench.reporting import Sources
+from rectbench.reporting.recall import KnownPair
 from rectbench.rigs import Rig
 from rectbench.types import Matches
 from rectbench.warps import Cubic, Epipolar, Perspective, Radial, Rectification

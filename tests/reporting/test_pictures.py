@@ -10,16 +10,16 @@ import pytest
 
 import rectbench as rb
 from rectbench.errors import Unsupported
+from rectbench.metrics.catalogue import PROTOCOLS, STAGES
 from rectbench.reporting import Sources
 from rectbench.reporting.charts.bars import draw_bars, pair_chart, stage_chart
 from rectbench.reporting.charts.energy_curves import draw_energy, shape_of
 from rectbench.reporting.charts.squares import mapped_cells, source_squares
-from rectbench.reporting.columns import PROTOCOLS, STAGES
 from rectbench.reporting.pictures.clouds import SIZE, draw_clouds
 from rectbench.reporting.pictures.distortion_maps import BEYOND, draw_distortion_maps
 from rectbench.reporting.pictures.rectified import draw_rectified
 from rectbench.reporting.pictures.views import BACKGROUND, View, looking_at, patches_of, splat, two_views
-from rectbench.reporting.run_folder import read_run
+from rectbench.runs.run import read_run
 from tests.reporting.runs import fake_pair, fake_rectification, fake_rig, make_row, quick_rows
 
 WriteRun = Callable[..., Path]

@@ -7,10 +7,10 @@ from typing import Any
 import pytest
 
 from rectbench.errors import InvalidResult
-from rectbench.experiments import recall
 from rectbench.metrics import distortion
-from rectbench.reporting.run_folder import Run, read_run
+from rectbench.reporting import recall
 from rectbench.reporting.sources import sources_of
+from rectbench.runs.run import Run, read_run
 from tests.reporting.runs import fake_rectification, fake_rig, make_row
 
 RIG = fake_rig(160)

@@ -27,7 +27,7 @@ from rectbench.errors import InvalidInput
 from rectbench.pairs.pairs import RENDERING_PACKAGES, placed, render_seed, set_stage
 from rectbench.pairs.rig_numbers import rig_numbers
 from rectbench.plugins.fitting import checked_options, fit
-from rectbench.plugins.rectifier import METHODS, Options, pose_problem
+from rectbench.plugins.rectifier import METHODS, Options, Rectifier, pose_problem
 from rectbench.plugins.scene import SCENES
 from rectbench.progress import Progress
 from rectbench.registry import Plugin, registry

@@ -15,7 +15,7 @@ import numpy as np
 from rectbench.errors import InvalidInput, PoseNotFound
 from rectbench.experiments.execution.outcomes import LASTING, Outcome, outcome_of
 from rectbench.experiments.spec import CALIBRATED, ESTIMATED, IMAGE_METRICS
-from rectbench.experiments.tasks import AnyPair, CellTask, PairTask, PhotoTask
+from rectbench.experiments.tasks import CellTask
 from rectbench.matching import BoardMatches, agreeing_matches, board_matches, reconstruct
 from rectbench.metrics import (
     Jacobians,
@@ -35,6 +35,7 @@ from rectbench.pairs.pairs import (
     placed_rig,
     truth_inputs,
 )
+from rectbench.pairs.spec import PairSpec, PhotographedSpec, RenderedSpec
 from rectbench.plugins.fitting import check_result, checked_options, fit
 from rectbench.plugins.rectifier import METHODS, Problem, pose_problem
 from rectbench.registry import registry
@@ -81,7 +82,7 @@ def uses_images(task: CellTask) -> bool:
     """Whether the row of a cell hangs on its images, as that of photographs always does."""
     needs = registry(METHODS).get(task.method_source).value.needs
     asked = "images" in needs or task.cell.pose == ESTIMATED or not IMAGE_METRICS.isdisjoint(task.metrics)
-    return asked or isinstance(task.pair, PhotoTask)
+    return asked or isinstance(task.pair, PhotographedSpec)
 
 
 def stored_outcome(task: CellTask, store: Store) -> Outcome | None:
@@ -110,7 +111,7 @@ def keep(task: CellTask, outcome: Outcome, store: Store) -> None:
         store.write_text(CELLS, cell_inputs(task), ROW, json.dumps(asdict(outcome)))
 
 
-def run_pair(pair: PairTask, store_root: Path) -> Outcome:
+def run_pair(pair: RenderedSpec, store_root: Path) -> Outcome:
     """Render a pair into the store; whatever a scene raises becomes a status."""
     try:
         make_pair(pair, Store(store_root))
@@ -153,7 +154,7 @@ def _given_matches(task: CellTask, store: Store) -> Matches:
     Photographs have no true ones: theirs are those of the estimate, whatever pose the others are told.
     """
     cell = task.cell
-    if cell.pose == ESTIMATED or isinstance(task.pair, PhotoTask):
+    if cell.pose == ESTIMATED or isinstance(task.pair, PhotographedSpec):
         return estimated_pose(task.pair, store).inliers
     seed = derived_seed("matches", cell.scene, cell.rig, cell.motion, cell.seed)
     truth = _truth(task.pair, store)
@@ -161,19 +162,19 @@ def _given_matches(task: CellTask, store: Store) -> Matches:
 
 
 @lru_cache(maxsize=1)
-def _true_matches(pair: AnyPair, store: Store) -> Matches:
+def _true_matches(pair: PairSpec, store: Store) -> Matches:
     return Matches(*_truth(pair, store).matches(SCORED_MATCHES))
 
 
 @lru_cache(maxsize=1)
-def feature_matches(pair: AnyPair, by_estimate: bool, store: Store) -> Matches:
+def feature_matches(pair: PairSpec, by_estimate: bool, store: Store) -> Matches:
     """Freed of wrong matches by the true pose; or, as the paper frees its own, by the estimated one.
 
     Of photographs those that agree on the pose in the images, whatever the calibration says: it may be
     what is wrong. Raises PoseNotFound where photographs tell none.
     """
     rig = placed_rig(pair)
-    if isinstance(pair, PhotoTask):
+    if isinstance(pair, PhotographedSpec):
         photographs = load_images(pair, store)
         images = Images(photographs.left, photographs.right)
         return agreeing_matches(estimated_pose(pair, store), rig.left, rig.right, images)
@@ -182,23 +183,23 @@ def feature_matches(pair: AnyPair, by_estimate: bool, store: Store) -> Matches:
 
 
 @lru_cache(maxsize=1)
-def corners_of_board(pair: AnyPair, store: Store) -> BoardMatches | None:
+def corners_of_board(pair: PairSpec, store: Store) -> BoardMatches | None:
     """The corners of a calibration board that both images of a pair show; None where they show none."""
     images = load_images(pair, store)
     return board_matches(images.left, images.right)
 
 
 @lru_cache(maxsize=1)
-def _truth(pair: AnyPair, store: Store) -> Truth:
+def _truth(pair: PairSpec, store: Store) -> Truth:
     """Kept, since the methods of one pair run one after another."""
-    if isinstance(pair, PhotoTask):
+    if isinstance(pair, PhotographedSpec):
         raise InvalidInput(f"nobody knows the truth about the photographs of {pair.scene}")
     return load_truth(pair, store)
 
 
 def _measured(task: CellTask, store: Store) -> Outcome:
     method = registry(METHODS).get(task.method_source)
-    if isinstance(task.pair, PhotoTask):
+    if isinstance(task.pair, PhotographedSpec):
         load_images(task.pair, store)  # raises for images that are not the calibration's
     options, problem = checked_options(method, task.options), problem_of(task, store)
     columns: dict[str, float] = {}
@@ -243,7 +244,7 @@ def _scores(
         columns |= distortion_columns(Jacobians.at(rectification))
     if by_estimate:
         estimate = estimated_pose(pair, store)
-        if isinstance(pair, PhotoTask):
+        if isinstance(pair, PhotographedSpec):
             columns |= calibration_columns(estimate, rig)
             if contradiction := estimate.contradiction(rig):
                 remarks["contradiction"] = contradiction
@@ -259,7 +260,7 @@ def _scores(
 
 
 @lru_cache(maxsize=1)
-def _pose_time(pair: AnyPair, store: Store) -> float:
+def _pose_time(pair: PairSpec, store: Store) -> float:
     """Seconds from the two images, in memory, to the pose."""
     images = load_images(pair, store)
     return timed(lambda: estimate_from_images(pair, images))[1]

@@ -46,7 +46,11 @@ def run_on_cluster(
     with client:
         index_of = {}
         for index, task in enumerate(tasks):
-            message = {"task": task.to_json(), "inputs": digest(cell_inputs(task)), "limits": asdict(limits)}
+            message = {
+                "task": task.model_dump(mode="json"),
+                "inputs": digest(cell_inputs(task)),
+                "limits": asdict(limits),
+            }
             future = client.submit(run_isolated, message, timeout_s, pure=False)
             index_of[future] = index
         for future in as_completed(index_of, loop=client.loop):
@@ -77,7 +81,7 @@ def _died(error: BaseException) -> Outcome:
 
 def _answer(message: dict[str, Any]) -> Outcome:
     restrict(Limits(**message["limits"]))
-    task = CellTask.from_json(message["task"])
+    task = CellTask.model_validate(message["task"])
     try:
         inputs = digest(cell_inputs(task))
     except RectbenchError as error:

@@ -17,12 +17,13 @@ from rectbench.experiments.execution.outcomes import Outcome
 from rectbench.experiments.execution.pool import Job, Workers
 from rectbench.experiments.execution.worker import Limits
 from rectbench.experiments.planning import Plan, Selection, find_report, make_plan
-from rectbench.experiments.run_folder import check_writable, facts_of, table_of, write_run
 from rectbench.experiments.spec import Report
-from rectbench.experiments.tasks import CellTask, PairTask
+from rectbench.experiments.tasks import CellTask
 from rectbench.pairs.pairs import IMAGES, TRUTH, image_inputs, is_made, truth_inputs
+from rectbench.pairs.spec import RenderedSpec
 from rectbench.progress import Progress, progress_for
 from rectbench.registry import is_path
+from rectbench.runs.record import check_writable, facts_of, table_of, write_run
 from rectbench.store.store import Store
 
 RUNS = Path("runs")
@@ -124,7 +125,7 @@ class _Runner:
         for task in self.plan.tasks:
             self.store.drop(self.store.place(CELLS, cell_inputs(task)))
         for pair in self.plan.pairs:
-            if isinstance(pair, PairTask):
+            if isinstance(pair, RenderedSpec):
                 self.store.drop(self.store.place(TRUTH, truth_inputs(pair)))
                 self.store.drop(self.store.place(IMAGES, image_inputs(pair)))
 
@@ -167,7 +168,7 @@ class _Runner:
         wanted = dict.fromkeys(
             task.pair
             for task, outcome in zip(self.plan.tasks, found, strict=True)
-            if isinstance(task.pair, PairTask) and (outcome is None or task.pair.images)
+            if isinstance(task.pair, RenderedSpec) and (outcome is None or task.pair.images)
         )
         missing = [pair for pair in wanted if not is_made(pair, self.store)]
         if not missing:
@@ -183,7 +184,7 @@ class _Runner:
                 pair = failed[task.pair]
                 found[index] = replace(pair, reason=f"rendering the pair: {pair.reason}")
 
-    def _pair_job(self, pair: PairTask) -> Job:
+    def _pair_job(self, pair: RenderedSpec) -> Job:
         arguments = (pair, self.store.root)
         return Job(run_pair, arguments, self.plan.report.render_timeout_s, ((pair.scene_source, pair.seed),))
 

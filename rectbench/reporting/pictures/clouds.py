@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rectbench.images.stereo_pair import StereoPair
+from rectbench.metrics.catalogue import column
 from rectbench.rendering.truth import Truth
-from rectbench.reporting.columns import column
 from rectbench.reporting.pictures.panels import fit_into_box, panel_grid, write_head, write_message
 from rectbench.reporting.pictures.views import Floats, Patches, Picture, View, patches_of, splat, two_views
-from rectbench.reporting.run_folder import Result
 from rectbench.reporting.sources import Sources, attempted
 from rectbench.reporting.style import looks
 from rectbench.reporting.tables.numbers import shown
+from rectbench.runs.run import Result
 from rectbench.types import FloatArray
 
 if TYPE_CHECKING:

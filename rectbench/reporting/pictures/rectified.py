@@ -10,12 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rectbench.images.stereo_pair import StereoPair
-from rectbench.reporting.columns import column
+from rectbench.metrics.catalogue import column
 from rectbench.reporting.pictures.panels import fit_into_box, panel_grid, write_head, write_message
-from rectbench.reporting.run_folder import Result
 from rectbench.reporting.sources import Sources, attempted
 from rectbench.reporting.style import PAGE_INCHES, looks
 from rectbench.reporting.tables.numbers import shown
+from rectbench.runs.run import Result
 from rectbench.types import FloatArray, Matches
 from rectbench.warps import Rectification
 

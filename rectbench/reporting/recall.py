@@ -13,15 +13,16 @@ import numpy as np
 
 from rectbench.errors import InvalidInput, PoseNotFound
 from rectbench.experiments.execution.cells import cell_inputs, corners_of_board, feature_matches, problem_of
-from rectbench.experiments.run_folder import RUN_FILE
-from rectbench.experiments.tasks import IDENTITY, CellTask, PhotoTask
+from rectbench.experiments.tasks import IDENTITY, CellTask
 from rectbench.images.stereo_pair import StereoPair
 from rectbench.pairs.pairs import image_inputs, load_images, load_truth, placed_rig
+from rectbench.pairs.spec import PhotographedSpec
 from rectbench.plugins.fitting import checked_options, fit
 from rectbench.plugins.rectifier import METHODS
 from rectbench.registry import registry
 from rectbench.rendering.truth import Truth
 from rectbench.rigs import Rig
+from rectbench.runs.record import RUN_FILE
 from rectbench.store.keys import digest
 from rectbench.store.store import Store
 from rectbench.types import Matches
@@ -35,7 +36,7 @@ def read_tasks(run_dir: Path) -> dict[tuple[Any, ...], CellTask]:
     """The tasks of a run by their identity; look one up with `identity_of(row)`."""
     try:
         facts = json.loads((run_dir / RUN_FILE).read_text(encoding="utf-8"))
-        tasks = [CellTask.from_json(values) for values in facts["cells"]]
+        tasks = [CellTask.model_validate(values) for values in facts["cells"]]
     except (OSError, ValueError, KeyError, TypeError) as error:
         raise InvalidInput(f"{run_dir / RUN_FILE} tells no plan: {type(error).__name__} {error}") from None
     return {identity_of(vars(task.cell)): task for task in tasks}
@@ -63,13 +64,13 @@ def recalled_pair(task: CellTask, store: Store | None = None) -> KnownPair:
     """The images of a cell and what is known of them; what the store has lost is rendered again."""
     store, pair = store or Store.default(), task.pair
     images = load_images(pair, store)
-    if isinstance(pair, PhotoTask):
+    if isinstance(pair, PhotographedSpec):
         return KnownPair(images, placed_rig(pair), _found_matches(pair, store), None)
     truth = load_truth(pair, store)
     return KnownPair(images, truth.rig, Matches(*truth.matches(SHOWN_MATCHES, seed=0)), truth)
 
 
-def _found_matches(pair: PhotoTask, store: Store) -> Matches:
+def _found_matches(pair: PhotographedSpec, store: Store) -> Matches:
     """The matches that agree on a pose, and the corners of a board, as far as there are any."""
     found = [] if (board := corners_of_board(pair, store)) is None else [board.matches]
     with suppress(PoseNotFound):
