@@ -15,8 +15,13 @@ from rectbench.calibrations import holds_many, load_rig, load_rig_of_images
 from rectbench.calibrations.reading import RigSource
 from rectbench.errors import InvalidInput
 from rectbench.matching.features.matches import RATIO
+<<<<<<< HEAD
 from rectbench.matching.pose.estimate import WORKING_PIXELS, PoseEstimate, pose_from_images
 from rectbench.pairs.rendering import placed, render_seed
+=======
+from rectbench.matching.pose.estimate import POSE_PIXELS, PoseEstimate, pose_from_images
+from rectbench.pairs.pairs import build_world, placed, render_seed
+>>>>>>> habits
 from rectbench.plugins.fitting import checked_options, fit
 from rectbench.plugins.rectifier import METHODS, pose_problem
 from rectbench.plugins.scene import SCENES
@@ -173,7 +178,7 @@ def estimate_pose(
     detector: str = "sift",
     ratio: float = RATIO,
     farthest: float | None = None,
-    working_pixels: float | None = WORKING_PIXELS,
+    working_pixels: float | None = POSE_PIXELS,
     seed: int = 0,
 ) -> PoseEstimate:
     """How the right camera stands to the left one as two photographs show it.
