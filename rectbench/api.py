@@ -15,13 +15,8 @@ from rectbench.calibrations import holds_many, load_rig, load_rig_of_images
 from rectbench.calibrations.reading import RigSource
 from rectbench.errors import InvalidInput
 from rectbench.matching.features.matches import RATIO
-<<<<<<< HEAD
-from rectbench.matching.pose.estimate import WORKING_PIXELS, PoseEstimate, pose_from_images
-from rectbench.pairs.rendering import placed, render_seed
-=======
 from rectbench.matching.pose.estimate import POSE_PIXELS, PoseEstimate, pose_from_images
-from rectbench.pairs.pairs import build_world, placed, render_seed
->>>>>>> habits
+from rectbench.pairs.rendering import placed, render_seed
 from rectbench.plugins.fitting import checked_options, fit
 from rectbench.plugins.rectifier import METHODS, pose_problem
 from rectbench.plugins.scene import SCENES
