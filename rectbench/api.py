@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from rectbench.applications.rectified_images import RectifiedImages
     from rectbench.experiments.spec import Report
     from rectbench.images.stereo_pair import StereoPair
-    from rectbench.pairs.finding.pairing import FilePair
+    from rectbench.pairs.finding.names import FilePair
     from rectbench.rendering.truth import Truth
 
 SIDES = ("left", "right")
@@ -155,7 +155,7 @@ def rectify_images(
 
 def _refuse_guessed_cameras(rig: Rig | RigSource | Sequence[RigSource], pair: FilePair) -> None:
     """Raise InvalidInput for images numbered as others than the first two cameras of a file of many."""
-    from rectbench.pairs.finding.pairing import camera_numbers
+    from rectbench.pairs.finding.names import camera_numbers
 
     numbers = camera_numbers(pair)
     files = [] if isinstance(rig, Rig) else [rig] if isinstance(rig, str | os.PathLike) else list(rig)

@@ -14,7 +14,7 @@ from rectbench.errors import InvalidInput, PoseNotFound
 from rectbench.images.reading import read_images, rgb8
 from rectbench.images.stereo_pair import StereoPair
 from rectbench.matching import agreeing_matches
-from rectbench.pairs.finding.found_calibrations import Calibration
+from rectbench.pairs.finding.calibrations import Calibration
 from rectbench.pairs.pair import Pair
 from rectbench.pairs.rig_numbers import rig_numbers
 from rectbench.pairs.spec import CALIBRATED, PhotographedSpec

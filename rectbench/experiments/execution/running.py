@@ -68,7 +68,7 @@ def run(
         before a name adds it to the report's own.
     data : the folder of photographs, for a report that takes them.
     options : options by method and name, laid over the report's.
-    jobs : worker processes; as many as there are cores by default. The rows do not hang on it.
+    jobs : worker processes; as many as there are cores by default. The rows do not depend on it.
     dask : address of a dask.distributed scheduler that runs the cells in the place of local workers.
     fresh : make again what the store has of this run.
     progress : bars on stderr; on a terminal alone by default.
