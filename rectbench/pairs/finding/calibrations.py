@@ -22,7 +22,7 @@ TOLD_SUFFIXES = SUFFIXES - {".txt", ".bin"}
 RIM_IMAGES = 8
 """Pairs of a rig that the rim of its lenses is looked for in."""
 UNSTATED_UNIT = "mm"
-"""What a baseline is in that is too long for metres and has no unit: no number of the report depends on it."""
+"""What a baseline is in that is too long for metres and has no unit; no number of a report depends on it."""
 
 
 @dataclass(frozen=True)
