@@ -16,10 +16,9 @@ def write_atomically(path: Path, content: str | bytes) -> None:
 
     Text is UTF-8 with line feeds. Raises Unavailable, naming the path, where the disk takes no more.
     """
-    with _blaming(path, Unavailable):
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with _written_beside(path, content) as unfinished:
-            unfinished.replace(path)
+    make_folder(path.parent)
+    with _blaming(path, Unavailable), _written_beside(path, content) as unfinished:
+        unfinished.replace(path)
 
 
 def replace_files(contents: Mapping[Path, str | bytes], error: type[RectbenchError] = Unavailable) -> None:
