@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from rectbench.calibrations.contract import UNITS, Given, View
+from rectbench.calibrations.contract import UNITS, Given, PosedCamera
 from rectbench.calibrations.documents.faults import blaming, shown
 from rectbench.calibrations.documents.sources import Source
 from rectbench.calibrations.transforms import inverse
@@ -58,13 +58,13 @@ def assembled(
     return rig
 
 
-def rig_of_views(views: Sequence[View], given: Given, name: str, unit: str | None = None) -> Rig:
+def rig_of_posed(posed: Sequence[PosedCamera], given: Given, name: str, unit: str | None = None) -> Rig:
     """The rig of two cameras, left and right, that stand in one frame."""
-    left, right = views
+    left, right = posed
     where = f"{left.where} and {right.where}"
     if left.T_shared_camera is None or right.T_shared_camera is None:
-        untold = left if left.T_shared_camera is None else right
-        raise InvalidInput(f"{untold.where}: does not say where its camera stands; expected {POSE_FILE}")
+        unposed = left if left.T_shared_camera is None else right
+        raise InvalidInput(f"{unposed.where}: does not say where its camera stands; expected {POSE_FILE}")
     if np.array_equal(left.T_shared_camera[:3, 3], right.T_shared_camera[:3, 3]):
         raise InvalidInput(f"{where}: put both cameras at one place; expected two places, or {POSE_FILE}")
     with np.errstate(all="ignore"):  # what is not finite is said below
@@ -90,6 +90,6 @@ def single(sources: Sequence[Source]) -> Source:
     return sources[0]
 
 
-def placed(view: View, T_shared_camera: FloatArray) -> View:
+def placed(camera: PosedCamera, T_shared_camera: FloatArray) -> PosedCamera:
     """The same camera, standing there."""
-    return replace(view, T_shared_camera=T_shared_camera)
+    return replace(camera, T_shared_camera=T_shared_camera)

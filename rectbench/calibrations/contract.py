@@ -1,4 +1,4 @@
-"""What a calibration format is: how its files are told from others, and what is read from them.
+"""What a calibration format is: how its files are recognised, and what is read from them.
 
 How one is written is in `rectbench.rigs.file_formats`. A format is one object of these classes in a file of
 its own below `rectbench.calibrations.formats`, or in a package's module that is announced as an entry point
@@ -40,7 +40,7 @@ class Given:
 
 
 @dataclass(frozen=True)
-class View:
+class PosedCamera:
     """A camera of a file, and how it stands in a frame that it shares with the other camera's file.
 
     X_shared = T_shared_camera X_camera, a 4x4 rigid transformation in the file's unit; None where
@@ -76,4 +76,4 @@ class CameraFormat(FileFormat):
     """
 
     recognises: Callable[[Source], bool]
-    read: Callable[[Source, Given], View]
+    read: Callable[[Source, Given], PosedCamera]

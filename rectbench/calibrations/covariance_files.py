@@ -50,7 +50,7 @@ def load_covariance(
 ) -> RigCovariance:
     """The covariance of the rig's calibration from a file, or from one a camera, left first.
 
-    Which kind a file is of is told by its content, see this module. Raises InvalidInput, in one line
+    The kind of a file is recognised by its content, see this module. Raises InvalidInput, in one line
     that names file and key, for what cannot be read, is no covariance or belongs to another rig.
 
     >>> import tempfile

@@ -8,7 +8,7 @@ from typing import TypeVar
 from rectbench.cameras import Camera
 from rectbench.cameras.equivalents import equal_cameras
 from rectbench.cameras.lens import lens_named
-from rectbench.rigs.file_formats import NotHeld
+from rectbench.rigs.file_formats import CannotHold
 
 Key = TypeVar("Key")
 Layouts = Mapping[Key, tuple[str, Collection[str]]]
@@ -19,7 +19,7 @@ def layout_of(camera: Camera, layouts: Layouts[Key], format: str, side: str) -> 
     """Which of a format's layouts holds the camera exactly, and the camera by that layout's model.
 
     The first of the camera's own model that will do is taken, else the first of a model under which it
-    is the same camera (see `equal_cameras`). Raises NotHeld, naming the parameters that have no place.
+    is the same camera (see `equal_cameras`). Raises CannotHold, naming the parameters that have no place.
     """
     for equal in equal_cameras(camera):
         for layout, (model, names) in layouts.items():
@@ -30,7 +30,7 @@ def layout_of(camera: Camera, layouts: Layouts[Key], format: str, side: str) -> 
     if places:
         fewest = min((_left_out(camera, names) for names in places), key=len)
         who += f" with {', '.join(f'{name} = {camera.params[name]:g}' for name in fewest)}"
-    raise NotHeld(who)
+    raise CannotHold(who)
 
 
 def _left_out(camera: Camera, names: Collection[str]) -> list[str]:

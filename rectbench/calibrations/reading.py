@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from rectbench.calibrations import pose_file
-from rectbench.calibrations.assembling import assembled, rig_of_views
+from rectbench.calibrations.assembling import assembled, rig_of_posed
 from rectbench.calibrations.built_in_rigs import built_in_rig, may_be_rig_name
 from rectbench.calibrations.contract import CameraFormat, Given, RigFormat
 from rectbench.calibrations.documents.faults import one_line, shown
@@ -47,7 +47,7 @@ def load_rig(
 
     Formats: see `calibration_formats`; each has a module in `rectbench.calibrations.formats` that says what
     it reads. The first camera of a file, or of a list, is the left one; cameras are never swapped, and a
-    right camera on the left is told in the log.
+    right camera on the left is logged as a warning.
 
     Raises UnknownName for a name that no rig has, and InvalidInput in one line that names file, key
     and what was expected for files that hold no rig.
@@ -63,11 +63,11 @@ def load_rig(
     if isinstance(source, str | os.PathLike):
         if isinstance(source, str) and may_be_rig_name(source):
             return built_in_rig(source)
-        return _with_order_told(_read([source], given))
+        return _checked_order(_read([source], given))
     paths = list(source) if isinstance(source, Sequence) else []
     if not paths or not all(isinstance(path, str | os.PathLike) for path in paths):
         raise InvalidInput("a rig's files are an empty list or hold no paths; expected a list of paths")
-    return _with_order_told(_read(paths, given))
+    return _checked_order(_read(paths, given))
 
 
 def load_rig_of_images(
@@ -111,8 +111,8 @@ def _read_sources(sources: list[Source], given: Given) -> Rig:
     raise InvalidInput(f"{sources[0].path}: is no calibration known here; expected {_expected()}")
 
 
-def _with_order_told(rig: Rig) -> Rig:
-    """The rig as it is, with a word in the log where its right camera stands on the left."""
+def _checked_order(rig: Rig) -> Rig:
+    """The rig as it is, with a warning in the log where its right camera stands on the left."""
     x, y, z = rig.centre_right_in_left
     if x < -max(abs(y), abs(z)):
         log.warning(
@@ -144,23 +144,23 @@ def _check_choice(source: Source, format: RigFormat, given: Given) -> None:
 
 def _read_cameras(sources: list[Source], given: Given) -> Rig:
     """The rig of two files of a camera each and, perhaps, a third with their pose."""
-    views = [format.read(source, given) for source in sources if (format := camera_format(source))]
+    posed = [format.read(source, given) for source in sources if (format := camera_format(source))]
     others = [source for source in sources if not camera_format(source)]
-    if len(views) != 2:
+    if len(posed) != 2:
         _ = [other.document for other in others]  # what is damaged says so itself
-        files = "a file" if len(views) == 1 else f"one of {len(views)} files"
+        files = "a file" if len(posed) == 1 else f"one of {len(posed)} files"
         raise InvalidInput(
-            f"{views[0].where}: is {files} with one camera; expected two of them, left and right"
+            f"{posed[0].where}: is {files} with one camera; expected two of them, left and right"
         )
     if len(others) > 1 or not all(pose_file.recognises(other) for other in others):
         raise InvalidInput(
             f"{others[0].path}: is no pose; expected one file with R_right_left and t_right_left, or with "
             "OpenCV's R and T, beside the files of two cameras"
         )
-    left, right = views
+    left, right = posed
     name = sources[0].name
     if not others:
-        return rig_of_views(views, given, name)
+        return rig_of_posed(posed, given, name)
     T_right_left = pose_file.read(others[0])
     return assembled(left.camera, right.camera, T_right_left, given, others[0].path, name)
 

@@ -55,6 +55,13 @@ class RigCovariance:
     source : where it comes from; prose.
 
     Raises InvalidInput for names that are none or twice there, and for a matrix that is no covariance.
+
+    >>> import rectbench as rb
+    >>> sure = rb.RigCovariance.from_sigmas(rb.load_rig("t265"), focal_px=0.3, parameters={"right.k1": 0.001})
+    >>> sure.uncertain
+    ('left.fx', 'left.fy', 'right.fx', 'right.fy', 'right.k1')
+    >>> sure.sigma("right.k1")
+    0.001
     """
 
     parameters: tuple[str, ...]

@@ -11,8 +11,8 @@ from rectbench.registry.kind import Described, Kind
 from rectbench.rigs.rig import Rig
 
 
-class NotHeld(InvalidInput):
-    """A format has no words for a camera; the message says which one, and what of it."""
+class CannotHold(InvalidInput):
+    """A format cannot represent a camera; the message names the camera, and what of it has no place."""
 
 
 def lost_angles(rig: Rig) -> list[str]:
@@ -29,7 +29,7 @@ class Writing:
     """How a format is written.
 
     `texts` gives the content of each file by its name, of a rig and the name that the user gave; it
-    writes nothing, so that a rig is refused (NotHeld) before a file is touched. Where `in_folder`, the
+    writes nothing, so that a rig is refused (CannotHold) before a file is touched. Where `in_folder`, the
     files stand in a folder of that name, which `load_rig` reads as one rig. `losses` gives, a line each,
     what of a rig that is not refused is not in the files, the lenses not being among it.
     """
@@ -41,7 +41,7 @@ class Writing:
 
 @dataclass(frozen=True)
 class FileFormat:
-    """A format of calibration files; its subclasses in `rectbench.calibrations.contract` say how it is read.
+    """A format of calibration files; its subclasses in `rectbench.calibrations.contract` add how it is read.
 
     `write` is None for a format that is only read.
     """

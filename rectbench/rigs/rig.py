@@ -157,7 +157,7 @@ class Rig:
 
         Returns the files. `load_rig(path)` gives the rig back to rounding, exactly for "native"; a camera may
         then bear another name for the same lens, such as kannala-brandt for an equidistant one. What a
-        format has no place for beside the lenses, `max_angle_deg` above all, is told in the log.
+        format has no place for beside the lenses, `max_angle_deg` above all, is logged as a warning.
 
         Raises UnknownName for a format that is not written; InvalidInput in one line for a camera that the
         format cannot hold exactly, with the formats that can, and for a path that cannot be written.

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from rectbench.errors import InvalidInput, UnknownName
 from rectbench.registry import registry
-from rectbench.rigs.file_formats import FORMATS, NotHeld, Writing
+from rectbench.rigs.file_formats import FORMATS, CannotHold, Writing
 from rectbench.rigs.rig import Rig
 from rectbench.writing import make_folder, replace_files
 
@@ -37,7 +37,7 @@ def calibration_texts(rig: Rig, name: str, format: str) -> Mapping[str, str]:
     """
     try:
         return _writing(format).texts(rig, name)
-    except NotHeld as reason:
+    except CannotHold as reason:
         raise InvalidInput(f"{reason}; expected one of the formats that have: {_holders(rig)}") from None
 
 
@@ -64,7 +64,7 @@ def _holders(rig: Rig) -> str:
     for name, writing in _writings().items():
         try:
             writing.texts(rig, "rig.yml")
-        except NotHeld:
+        except CannotHold:
             continue
         names.append(name)
     return ", ".join(sorted(names, key=lambda name: name != "native"))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib.metadata
 import subprocess
 import sys
+from collections.abc import Iterator
 from itertools import groupby
 from pathlib import Path
 
@@ -97,9 +98,9 @@ def made(source):
 """
 
 
-def test_a_package_announces_a_format_that_is_read_and_written(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+@pytest.fixture
+def third_party(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """An installed package with a format of its own."""
     (tmp_path / "lab_format.py").write_text(THIRD_PARTY)
     monkeypatch.syspath_prepend(tmp_path)
     point = importlib.metadata.EntryPoint("lab", "lab_format", "rectbench.formats")
@@ -107,6 +108,12 @@ def test_a_package_announces_a_format_that_is_read_and_written(
         importlib.metadata, "entry_points", lambda group: [point] if group == point.group else []
     )
     forget_plugins()
+    yield
+    forget_plugins()
+
+
+@pytest.mark.usefixtures("third_party")
+def test_a_package_announces_a_format_that_is_read_and_written(tmp_path: Path) -> None:
     assert written_formats()["third-party"] is False
     (path,) = FISHEYES.save(tmp_path / "rig.lab", "third-party")
     assert load_rig(path).baseline_m == pytest.approx(FISHEYES.baseline_m, abs=1e-15)

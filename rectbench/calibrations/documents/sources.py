@@ -80,7 +80,7 @@ class Source:
 
     @cached_property
     def head(self) -> str:
-        """The first 4096 bytes as text, by which kinds are told that are no YAML, JSON or XML."""
+        """The first 4096 bytes as text, by which formats are recognised that are no YAML, JSON or XML."""
         return self.content[:4096].decode("utf-8-sig", errors="replace")
 
     @cached_property

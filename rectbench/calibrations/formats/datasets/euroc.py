@@ -7,7 +7,7 @@ writes `distortion_coeffs` and `omni` too.
 
 from __future__ import annotations
 
-from rectbench.calibrations.contract import CameraFormat, Given, View
+from rectbench.calibrations.contract import CameraFormat, Given, PosedCamera
 from rectbench.calibrations.documents.faults import blaming
 from rectbench.calibrations.documents.sections import Section
 from rectbench.calibrations.documents.sources import Source
@@ -24,14 +24,14 @@ MODELS = {
 }
 
 
-def read_view(source: Source, given: Given) -> View:
+def read_posed(source: Source, given: Given) -> PosedCamera:
     """The camera in the file and where it stands in the body."""
     file = source.document
     model, params = _read_lens(file)
     size = file.size("resolution", given.size)
     T_body_camera = file.rigid("T_BS", "the pose from sensor to body, metres")
     with blaming(f"{source.path}: intrinsics"):
-        return View(source.path, Camera(model, size, params), T_body_camera)
+        return PosedCamera(source.path, Camera(model, size, params), T_body_camera)
 
 
 def _read_lens(file: Section) -> tuple[str, dict[str, float]]:
@@ -57,5 +57,5 @@ FORMAT = CameraFormat(
     "euroc",
     "EuRoC and Kimera sensor.yaml (two files)",
     lambda source: {"T_BS", "intrinsics"} <= source.keys,
-    read_view,
+    read_posed,
 )

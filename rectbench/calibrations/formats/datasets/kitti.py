@@ -16,8 +16,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from rectbench.calibrations.assembling import rig_of_views, single
-from rectbench.calibrations.contract import Given, RigFormat, View
+from rectbench.calibrations.assembling import rig_of_posed, single
+from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents.faults import blaming
 from rectbench.calibrations.documents.sections import Section
 from rectbench.calibrations.documents.sources import Source
@@ -33,12 +33,12 @@ def _read(sources: Sequence[Source], given: Given) -> Rig:
     file = Section(source.path, "", {key.strip(): values.split() for key, _, values in lines})
     if "P0" in file:
         names = given.cameras or ("P0", "P1")
-        return rig_of_views([_read_rectified(file, name, given) for name in names], given, source.name)
+        return rig_of_posed([_read_rectified(file, name, given) for name in names], given, source.name)
     names = given.cameras or ("00", "01")
-    return rig_of_views([_read_view(file, name, given) for name in names], given, source.name)
+    return rig_of_posed([_read_posed(file, name, given) for name in names], given, source.name)
 
 
-def _read_view(file: Section, name: str, given: Given) -> View:
+def _read_posed(file: Section, name: str, given: Given) -> PosedCamera:
     size = file.size(f"S_{name}", given.size)
     params = camera_matrix(file, f"K_{name}", "pinhole")
     params |= lens_parameters(file, f"D_{name}", "pinhole", (5,))
@@ -48,16 +48,16 @@ def _read_view(file: Section, name: str, given: Given) -> View:
     t = file.array(f"T_{name}", "three metres", (3,))
     with blaming(file.at(f"R_{name}")):
         T_camera_first = rigid(checked_rotation(R, "it"), t)
-    return View(file.at(f"R_{name}"), camera, inverse(T_camera_first))
+    return PosedCamera(file.at(f"R_{name}"), camera, inverse(T_camera_first))
 
 
-def _read_rectified(file: Section, name: str, given: Given) -> View:
+def _read_rectified(file: Section, name: str, given: Given) -> PosedCamera:
     P = file.array(name, "12 numbers, a 3x4 projection", (12,)).reshape(3, 4)
     size = file.sides("width", "height", given.size)
     K = Section(file.file, file.key, {name: P[:, :3].tolist()})
     with blaming(file.at(name)):
         camera = Camera("pinhole", size, camera_matrix(K, name, "pinhole"))
-        return View(file.at(name), camera, rigid(np.eye(3), -np.linalg.solve(P[:, :3], P[:, 3])))
+        return PosedCamera(file.at(name), camera, rigid(np.eye(3), -np.linalg.solve(P[:, :3], P[:, 3])))
 
 
 def _recognises(source: Source) -> bool:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from rectbench.calibrations.assembling import placed, rig_of_views
+from rectbench.calibrations.assembling import placed, rig_of_posed
 from rectbench.calibrations.contract import Given, RigFormat
 from rectbench.calibrations.documents.sections import Section
 from rectbench.calibrations.documents.sources import Source
@@ -28,8 +28,10 @@ def _read(sources: Sequence[Source], given: Given) -> Rig:
     cameras = cameras or [table.beside(name) for name in FISHEYES]
     if len(cameras) != 2:
         raise InvalidInput(f"{table.path}: comes with {len(cameras)} cameras; expected two, such as image_02")
-    views = [placed(camodocal.read_view(camera, given), _read_pose(table, camera.name)) for camera in cameras]
-    return rig_of_views(views, given, "kitti360")
+    posed = [
+        placed(camodocal.read_posed(camera, given), _read_pose(table, camera.name)) for camera in cameras
+    ]
+    return rig_of_posed(posed, given, "kitti360")
 
 
 def _read_pose(table: Source, camera: str) -> FloatArray:

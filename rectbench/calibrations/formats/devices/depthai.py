@@ -12,8 +12,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from rectbench.calibrations.assembling import chosen, rig_of_views, single
-from rectbench.calibrations.contract import Given, RigFormat, View
+from rectbench.calibrations.assembling import chosen, rig_of_posed, single
+from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents.faults import blaming
 from rectbench.calibrations.documents.numbers import finite_number
 from rectbench.calibrations.documents.sections import Section
@@ -44,8 +44,8 @@ def _read(sources: Sequence[Source], given: Given) -> Rig:
     if placed[0][0] != placed[1][0]:
         first, second = (cameras[name].at("extrinsics") for name in names)
         raise InvalidInput(f"{first} and {second} end at different cameras; expected one chain of both")
-    views = [_read_view(cameras[name], T, given) for name, (_, T) in zip(names, placed, strict=True)]
-    return rig_of_views(views, given, source.name, unit="cm")
+    posed = [_read_posed(cameras[name], T, given) for name, (_, T) in zip(names, placed, strict=True)]
+    return rig_of_posed(posed, given, source.name, unit="cm")
 
 
 def _cameras(file: Section) -> dict[str, Section]:
@@ -93,7 +93,7 @@ def _to_last(cameras: dict[str, Section], name: str) -> tuple[str, FloatArray]:
     raise InvalidInput(f"{cameras[name].at('extrinsics')} leads back to its own camera; expected an end, -1")
 
 
-def _read_view(section: Section, T: FloatArray, given: Given) -> View:
+def _read_posed(section: Section, T: FloatArray, given: Given) -> PosedCamera:
     kind = section.number("cameraType", "0 or 1") if "cameraType" in section else 0
     if kind not in LENSES:
         raise section.fault("cameraType", "0 (perspective) or 1 (fisheye)")
@@ -104,7 +104,7 @@ def _read_view(section: Section, T: FloatArray, given: Given) -> View:
     size = section.sides("width", "height", given.size)
     where = section.at("").removesuffix(".")
     with blaming(where):
-        return View(where, Camera(CAMERA_MODELS[lens], size, params), T)
+        return PosedCamera(where, Camera(CAMERA_MODELS[lens], size, params), T)
 
 
 FORMAT = RigFormat(

@@ -10,11 +10,11 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from rectbench.calibrations.assembling import rig_of_views, single
-from rectbench.calibrations.contract import CameraFormat, Given, RigFormat, View
+from rectbench.calibrations.assembling import rig_of_posed, single
+from rectbench.calibrations.contract import CameraFormat, Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents.sections import Section
 from rectbench.calibrations.documents.sources import Source
-from rectbench.calibrations.formats.devices.ros import view_of
+from rectbench.calibrations.formats.devices.ros import posed_of
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig
 
@@ -31,19 +31,19 @@ LABELS = {
 MAX_LINES = 500
 
 
-def _read_view(source: Source, given: Given) -> View:
-    return _views(source, given)[0]
+def _read_posed(source: Source, given: Given) -> PosedCamera:
+    return _posed(source, given)[0]
 
 
 def _read(sources: Sequence[Source], given: Given) -> Rig:
     source = single(sources)
-    views = _views(source, given)
-    if len(views) != 2:
-        raise InvalidInput(f"{source.path}: holds {len(views)} cameras; expected two, left and right")
-    return rig_of_views(views, given, source.name)
+    posed = _posed(source, given)
+    if len(posed) != 2:
+        raise InvalidInput(f"{source.path}: holds {len(posed)} cameras; expected two, left and right")
+    return rig_of_posed(posed, given, source.name)
 
 
-def _views(source: Source, given: Given) -> list[View]:
+def _posed(source: Source, given: Given) -> list[PosedCamera]:
     """The cameras of the file in its order; one ends where a label comes that it has already."""
     cameras: list[dict[str, list[str]]] = [{}]
     numbers: list[str] = []
@@ -59,7 +59,7 @@ def _views(source: Source, given: Given) -> list[View]:
         if label in cameras[-1]:
             cameras.append({})
         numbers = cameras[-1][label] = []
-    return [view_of(_camera(source.path, place, values), given) for place, values in enumerate(cameras)]
+    return [posed_of(_camera(source.path, place, values), given) for place, values in enumerate(cameras)]
 
 
 def _camera(path: str, place: int, values: dict[str, list[str]]) -> Section:
@@ -76,7 +76,7 @@ CAMERA_FORMAT = CameraFormat(
     "ost",
     "ROS camera_calibration ost.txt or .ini (two files)",
     lambda source: _count(source) == 1,
-    _read_view,
+    _read_posed,
 )
 FORMAT = RigFormat(
     "ost-pair",

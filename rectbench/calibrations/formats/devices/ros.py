@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from rectbench.calibrations.contract import CameraFormat, Given, View
+from rectbench.calibrations.contract import CameraFormat, Given, PosedCamera
 from rectbench.calibrations.documents.faults import blaming
 from rectbench.calibrations.documents.sections import Section
 from rectbench.calibrations.documents.sources import Source
@@ -62,12 +62,12 @@ LAYOUTS = {
 """The models that sensor_msgs/distortion_models names and image_geometry takes, which are written."""
 
 
-def read_view(source: Source, given: Given) -> View:
+def read_posed(source: Source, given: Given) -> PosedCamera:
     """The camera in the file and, where its projection matrix tells, its place in the rectified frame."""
-    return view_of(source.document, given)
+    return posed_of(source.document, given)
 
 
-def view_of(file: Section, given: Given) -> View:
+def posed_of(file: Section, given: Given) -> PosedCamera:
     """The same of the content of a file."""
     kind = file.text("distortion_model", ", ".join(MODELS)) if "distortion_model" in file else "plumb_bob"
     if kind not in MODELS:
@@ -81,7 +81,7 @@ def view_of(file: Section, given: Given) -> View:
     with blaming(f"{file.at(K)}, {D}"):
         camera = Camera("kannala-brandt" if lens == "fisheye" else "pinhole", size, params)
     where = file.at("").removesuffix(": ")
-    return View(where, camera, rectified_place(file, _key(file, "R"), _key(file, "P")))
+    return PosedCamera(where, camera, rectified_place(file, _key(file, "R"), _key(file, "P")))
 
 
 def rectified_place(file: Section, R_key: str, P_key: str) -> FloatArray | None:
@@ -161,5 +161,9 @@ def _matrix(matrix: FloatArray) -> dict[str, Any]:
 
 
 FORMAT = CameraFormat(
-    "ros", "ROS camera_info (YAML; two files)", _recognises, read_view, write=Writing(_texts, in_folder=True)
+    "ros",
+    "ROS camera_info (YAML; two files)",
+    _recognises,
+    read_posed,
+    write=Writing(_texts, in_folder=True),
 )

@@ -18,8 +18,8 @@ from typing import Any
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from rectbench.calibrations.assembling import rig_of_views, single
-from rectbench.calibrations.contract import Given, RigFormat, View
+from rectbench.calibrations.assembling import rig_of_posed, single
+from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents.faults import blaming, shown
 from rectbench.calibrations.documents.sections import Section
 from rectbench.calibrations.documents.sources import Source
@@ -72,8 +72,8 @@ def _read(sources: Sequence[Source], given: Given) -> Rig:
     top = single(sources).document
     content = top.section("value0", "the calibration") if "value0" in top else top
     places = [_place(name, top.file) for name in given.cameras or ("cam0", "cam1")]
-    views = [_read_view(content, place, given.size) for place in places]
-    return rig_of_views(views, given, sources[0].name)
+    posed = [_read_posed(content, place, given.size) for place in places]
+    return rig_of_posed(posed, given, sources[0].name)
 
 
 def _place(name: str, file: str) -> int:
@@ -84,7 +84,7 @@ def _place(name: str, file: str) -> int:
     return int(found[1])
 
 
-def _read_view(content: Section, index: int, size: tuple[int, int] | None) -> View:
+def _read_posed(content: Section, index: int, size: tuple[int, int] | None) -> PosedCamera:
     camera = content.item("intrinsics", index, "a camera, of two at least")
     names = ", ".join(MODELS)
     kind = camera.text("camera_type", names)
@@ -101,7 +101,7 @@ def _read_view(content: Section, index: int, size: tuple[int, int] | None) -> Vi
     edge = math.degrees(math.atan(rpmax)) if rpmax > 0 else None  # where radtan8 ends, on the plane z = 1
     with blaming(where):
         built = Camera(model, image, params, edge)
-    return View(where, built, _read_pose(content.item("T_imu_cam", index, "a pose, of two at least")))
+    return PosedCamera(where, built, _read_pose(content.item("T_imu_cam", index, "a pose, of two at least")))
 
 
 def _read_pose(pose: Section) -> FloatArray:

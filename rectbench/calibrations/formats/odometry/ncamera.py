@@ -10,8 +10,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from rectbench.calibrations.assembling import chosen, rig_of_views, single
-from rectbench.calibrations.contract import Given, RigFormat, View
+from rectbench.calibrations.assembling import chosen, rig_of_posed, single
+from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents.faults import blaming
 from rectbench.calibrations.documents.sections import Section
 from rectbench.calibrations.documents.sources import Source
@@ -30,8 +30,8 @@ def _read(sources: Sequence[Source], given: Given) -> Rig:
     source = single(sources)
     cameras = _cameras(source)
     names = chosen([f"cam{place}" for place in cameras.values], given, source.path)
-    views = [_read_view(cameras.section(name.removeprefix("cam"), "a camera"), given) for name in names]
-    return rig_of_views(views, given, source.name)
+    posed = [_read_posed(cameras.section(name.removeprefix("cam"), "a camera"), given) for name in names]
+    return rig_of_posed(posed, given, source.name)
 
 
 def _cameras(source: Source) -> Section:
@@ -46,7 +46,7 @@ def _cameras(source: Source) -> Section:
     raise InvalidInput(f"{file.at('sensors')} holds no sensor with cameras; expected one of type NCAMERA")
 
 
-def _read_view(entry: Section, given: Given) -> View:
+def _read_posed(entry: Section, given: Given) -> PosedCamera:
     section = entry.section("camera", "a camera")
     layout = _layout(section)
     params = _numbers(section, "intrinsics", layout.intrinsics)
@@ -57,8 +57,10 @@ def _read_view(entry: Section, given: Given) -> View:
     with blaming(where):
         camera = Camera(layout.model, size, params)
     if "T_C_B" in entry and "T_B_C" not in entry:
-        return View(where, camera, inverse(entry.rigid("T_C_B", "the pose from body to camera, metres")))
-    return View(where, camera, entry.rigid("T_B_C", "the pose from camera to body, metres"))
+        return PosedCamera(
+            where, camera, inverse(entry.rigid("T_C_B", "the pose from body to camera, metres"))
+        )
+    return PosedCamera(where, camera, entry.rigid("T_B_C", "the pose from camera to body, metres"))
 
 
 def _layout(section: Section) -> Layout:

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from rectbench.calibrations.assembling import chosen, rig_of_views, single
-from rectbench.calibrations.contract import Given, RigFormat, View
+from rectbench.calibrations.assembling import chosen, rig_of_posed, single
+from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents.faults import blaming
 from rectbench.calibrations.documents.sections import Section
 from rectbench.calibrations.documents.sources import Source
@@ -29,11 +29,11 @@ def _read(sources: Sequence[Source], given: Given) -> Rig:
     source = single(sources)
     cameras = source.document.section_of_list("cameras")
     names = chosen([f"cam{place}" for place in cameras.values], given, source.path)
-    views = [_read_view(cameras.section(name.removeprefix("cam"), "a camera"), given) for name in names]
-    return rig_of_views(views, given, source.name)
+    posed = [_read_posed(cameras.section(name.removeprefix("cam"), "a camera"), given) for name in names]
+    return rig_of_posed(posed, given, source.name)
 
 
-def _read_view(section: Section, given: Given) -> View:
+def _read_posed(section: Section, given: Given) -> PosedCamera:
     kind = section.text("distortion_type", ", ".join(MODELS))
     if kind not in MODELS:
         raise section.fault("distortion_type", ", ".join(MODELS))
@@ -48,7 +48,7 @@ def _read_view(section: Section, given: Given) -> View:
     where = section.at("").removesuffix(".")
     with blaming(where):
         camera = Camera(model, size, dict(zip(names, [*focal, *centre, *distortion], strict=True)))
-    return View(where, camera, section.rigid("T_SC", "the pose from camera to IMU, metres"))
+    return PosedCamera(where, camera, section.rigid("T_SC", "the pose from camera to IMU, metres"))
 
 
 def _recognises(source: Source) -> bool:

@@ -14,8 +14,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from rectbench.calibrations.assembling import assembled, rig_of_views, single
-from rectbench.calibrations.contract import Given, RigFormat, View
+from rectbench.calibrations.assembling import assembled, rig_of_posed, single
+from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents.faults import blaming
 from rectbench.calibrations.documents.sections import Section
 from rectbench.calibrations.documents.sources import Source
@@ -46,8 +46,8 @@ def _read(sources: Sequence[Source], given: Given) -> Rig:
         return assembled(left, left, T, given, file.at("Stereo.b"), sources[0].name)
     if "LEFT.K" not in file and "RIGHT.K" not in file:
         return _read_side_by_side(file, given, sources[0].name)
-    views = [_read_rectified(file, side, given) for side in ("LEFT", "RIGHT")]
-    return rig_of_views(views, given, sources[0].name)
+    posed = [_read_rectified(file, side, given) for side in ("LEFT", "RIGHT")]
+    return rig_of_posed(posed, given, sources[0].name)
 
 
 def _read_side_by_side(file: Section, given: Given, name: str) -> Rig:
@@ -88,7 +88,7 @@ def _read_camera(file: Section, camera: str, given: Given) -> Camera:
         return Camera(model, size, params)
 
 
-def _read_rectified(file: Section, side: str, given: Given) -> View:
+def _read_rectified(file: Section, side: str, given: Given) -> PosedCamera:
     params = camera_matrix(file, f"{side}.K", "pinhole")
     params |= lens_parameters(file, f"{side}.D", "pinhole", PINHOLE_COUNTS)
     size = file.sides(f"{side}.width", f"{side}.height", given.size)
@@ -96,7 +96,7 @@ def _read_rectified(file: Section, side: str, given: Given) -> View:
     if T is None:
         raise InvalidInput(f"{file.at(side)}.R or {side}.P is missing; expected cv2.stereoRectify's R and P")
     with blaming(file.at(f"{side}.K")):
-        return View(file.at(f"{side}.R"), Camera("pinhole", size, params), T)
+        return PosedCamera(file.at(f"{side}.R"), Camera("pinhole", size, params), T)
 
 
 def _recognises(source: Source) -> bool:

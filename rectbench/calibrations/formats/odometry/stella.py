@@ -14,8 +14,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from rectbench.calibrations.assembling import assembled, rig_of_views, single
-from rectbench.calibrations.contract import Given, RigFormat, View
+from rectbench.calibrations.assembling import assembled, rig_of_posed, single
+from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents.faults import blaming
 from rectbench.calibrations.documents.sections import Section
 from rectbench.calibrations.documents.sources import Source
@@ -45,9 +45,9 @@ def _read(sources: Sequence[Source], given: Given) -> Rig:
     if "StereoRectifier" not in file:
         return _rectified(rectified, size, shift / focal, given, sources[0].name)
     rectifier = file.section("StereoRectifier", "K, D and R of both cameras")
-    left = _read_view(rectifier, "left", size, 0.0)
-    right = _read_view(rectifier, "right", size, shift / focal)
-    return rig_of_views((left, right), given, sources[0].name)
+    left = _read_posed(rectifier, "left", size, 0.0)
+    right = _read_posed(rectifier, "right", size, shift / focal)
+    return rig_of_posed((left, right), given, sources[0].name)
 
 
 def _rectified(file: Section, size: tuple[int, int], baseline: float, given: Given, name: str) -> Rig:
@@ -62,7 +62,7 @@ def _rectified(file: Section, size: tuple[int, int], baseline: float, given: Giv
     return assembled(camera, camera, rigid(np.eye(3), [-baseline, 0.0, 0.0]), given, file.at("fx"), name)
 
 
-def _read_view(rectifier: Section, side: str, size: tuple[int, int], baseline: float) -> View:
+def _read_posed(rectifier: Section, side: str, size: tuple[int, int], baseline: float) -> PosedCamera:
     kind = rectifier.text("model", "perspective or fisheye") if "model" in rectifier else "perspective"
     if kind not in MODELS:
         raise rectifier.fault("model", "perspective or fisheye")
@@ -71,7 +71,7 @@ def _read_view(rectifier: Section, side: str, size: tuple[int, int], baseline: f
     params |= lens_parameters(rectifier, f"D_{side}", lens, PINHOLE_COUNTS if lens == "pinhole" else (4,))
     with blaming(rectifier.at(f"K_{side}")):
         camera = Camera(CAMERA_MODELS[lens], size, params)
-    return View(rectifier.at(f"R_{side}"), camera, rectified_pose(rectifier, f"R_{side}", baseline))
+    return PosedCamera(rectifier.at(f"R_{side}"), camera, rectified_pose(rectifier, f"R_{side}", baseline))
 
 
 def rectified_pose(section: Section, key: str, baseline: float) -> FloatArray:

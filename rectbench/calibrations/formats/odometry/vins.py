@@ -15,7 +15,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from rectbench.calibrations.assembling import placed, rig_of_views
+from rectbench.calibrations.assembling import placed, rig_of_posed
 from rectbench.calibrations.contract import Given, RigFormat
 from rectbench.calibrations.documents.sources import Source
 from rectbench.calibrations.formats.toolboxes import camodocal
@@ -34,13 +34,13 @@ def _read(sources: Sequence[Source], given: Given) -> Rig:
             f"{configs[0].path}: is read together with {configs[1].path}; expected one of them"
         )
     config, file = configs[0], configs[0].document
-    views = []
+    posed = []
     for name in CAMERAS:
         calibration = file.text(f"{name}_calib", "the name of the camera's file")
         source = _named(calibration, sources) or config.beside(calibration)
         T = file.rigid(f"body_T_{name}", "the pose from camera to body, metres")
-        views.append(placed(camodocal.read_view(source, given), T))
-    return rig_of_views(views, given, config.name)
+        posed.append(placed(camodocal.read_posed(source, given), T))
+    return rig_of_posed(posed, given, config.name)
 
 
 def _named(name: str, sources: Sequence[Source]) -> Source | None:

@@ -277,14 +277,14 @@ def _looks_binary(content: bytes) -> bool:
 def _read(sources: Sequence[Source], given: Given) -> Rig:
     """The model among the sources, which may hold its other files too."""
     found = [source.path for source in sources if _recognises(source)]
-    strangers = [
+    unrecognised = [
         source.path
         for source in sources
         if source.path not in found and not Path(source.path).name.lower().startswith(OTHER_FILES)
     ]
     # COLMAP too prefers the binary files where there are both.
     binary = [path for path in found if path.lower().endswith(".bin")]
-    path, *more = [*(binary or found), *strangers]
+    path, *more = [*(binary or found), *unrecognised]
     if more:
         raise InvalidInput(f"{path}: is read together with {more[0]}; expected one COLMAP model")
     return read_colmap(path, given.cameras or (), given.size, given.unit)

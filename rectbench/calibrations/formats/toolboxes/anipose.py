@@ -12,8 +12,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from rectbench.calibrations.assembling import chosen, rig_of_views, single
-from rectbench.calibrations.contract import Given, RigFormat, View
+from rectbench.calibrations.assembling import chosen, rig_of_posed, single
+from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents.faults import blaming
 from rectbench.calibrations.documents.sections import Section
 from rectbench.calibrations.documents.sources import Source
@@ -39,7 +39,7 @@ def _read(sources: Sequence[Source], given: Given) -> Rig:
     if given.cameras and not set(given.cameras) <= cameras.keys():
         cameras = {str(camera.values.get("name", name)): camera for name, camera in cameras.items()}
     names = chosen(list(cameras), given, source.path)
-    return rig_of_views([_read_view(cameras[name], given) for name in names], given, source.name)
+    return rig_of_posed([_read_posed(cameras[name], given) for name in names], given, source.name)
 
 
 def _tables(values: Mapping[str, Any]) -> list[str]:
@@ -47,7 +47,7 @@ def _tables(values: Mapping[str, Any]) -> list[str]:
     return [name for name, table in values.items() if isinstance(table, dict) and table.keys() >= KEYS]
 
 
-def _read_view(section: Section, given: Given) -> View:
+def _read_posed(section: Section, given: Given) -> PosedCamera:
     lens = "fisheye" if str(section.values.get("fisheye", False)).lower() == "true" else "pinhole"
     params = camera_matrix(section, "matrix", lens)
     params |= lens_parameters(section, "distortions", lens, (4,) if lens == "fisheye" else PINHOLE_COUNTS)
@@ -57,7 +57,7 @@ def _read_view(section: Section, given: Given) -> View:
         camera = Camera(CAMERA_MODELS[lens], size, params)
     R = read_rotation(section, "rotation")
     t = section.array("translation", "three numbers in the board's unit", (3,))
-    return View(where, camera, inverse(rigid(R, t)))
+    return PosedCamera(where, camera, inverse(rigid(R, t)))
 
 
 def _recognises(source: Source) -> bool:

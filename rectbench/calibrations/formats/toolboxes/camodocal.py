@@ -21,7 +21,7 @@ from typing import Any
 
 import cv2
 
-from rectbench.calibrations.contract import CameraFormat, Given, View
+from rectbench.calibrations.contract import CameraFormat, Given, PosedCamera
 from rectbench.calibrations.documents.faults import blaming
 from rectbench.calibrations.documents.sections import Section
 from rectbench.calibrations.documents.sources import Source
@@ -61,7 +61,7 @@ MAX_POLYNOMIAL = 20
 """Coefficients of an inverse polynomial that CamOdoCal writes."""
 
 
-def read_view(source: Source, given: Given) -> View:
+def read_posed(source: Source, given: Given) -> PosedCamera:
     """The camera in the file; it does not tell its pose."""
     file = source.document
     kind = file.text("model_type", ", ".join(MODELS)).upper()
@@ -70,7 +70,7 @@ def read_view(source: Source, given: Given) -> View:
     size = file.sides("image_width", "image_height", given.size)
     model, params = READERS[kind](file)
     with blaming(source.path):
-        return View(source.path, Camera(model, size, params), _pose(file))
+        return PosedCamera(source.path, Camera(model, size, params), _pose(file))
 
 
 def _pose(file: Section) -> FloatArray | None:
@@ -168,6 +168,6 @@ FORMAT = CameraFormat(
     "camodocal",
     "CamOdoCal camera, as VINS and KITTI-360 use it (YAML; two files and a pose)",
     lambda source: "model_type" in source.keys and "cam0_calib" not in source.keys,
-    read_view,
+    read_posed,
     write=Writing(_texts, in_folder=True),
 )

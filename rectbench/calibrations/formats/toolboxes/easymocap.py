@@ -9,8 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from rectbench.calibrations.assembling import chosen, rig_of_views
-from rectbench.calibrations.contract import Given, RigFormat, View
+from rectbench.calibrations.assembling import chosen, rig_of_posed
+from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents.faults import blaming
 from rectbench.calibrations.documents.sections import Section
 from rectbench.calibrations.documents.sources import Source
@@ -35,8 +35,8 @@ def _read(sources: Sequence[Source], given: Given) -> Rig:
         files += [first.beside(name) for start, name in FILES.items() if not _has(first, start)]
     intrinsics, extrinsics = (_holder(files, start) for start in FILES)
     names = chosen(_names(intrinsics), given, intrinsics.path)
-    views = [_read_view(intrinsics.document, extrinsics.document, name, given) for name in names]
-    return rig_of_views(views, given, first.name)
+    posed = [_read_posed(intrinsics.document, extrinsics.document, name, given) for name in names]
+    return rig_of_posed(posed, given, first.name)
 
 
 def _holder(sources: Sequence[Source], start: str) -> Source:
@@ -58,7 +58,7 @@ def _names(source: Source) -> list[str]:
     return names
 
 
-def _read_view(intrinsics: Section, extrinsics: Section, name: str, given: Given) -> View:
+def _read_posed(intrinsics: Section, extrinsics: Section, name: str, given: Given) -> PosedCamera:
     params = camera_matrix(intrinsics, f"K_{name}", "pinhole")
     key = f"dist_{name}" if f"dist_{name}" in intrinsics else f"D_{name}"
     params |= lens_parameters(intrinsics, key, "pinhole", PINHOLE_COUNTS)
@@ -67,7 +67,7 @@ def _read_view(intrinsics: Section, extrinsics: Section, name: str, given: Given
         camera = Camera("pinhole", size, params)
     R = read_rotation(extrinsics, f"Rot_{name}" if f"Rot_{name}" in extrinsics else f"R_{name}")
     t = extrinsics.array(f"T_{name}", "three metres", (3,))
-    return View(extrinsics.at(f"T_{name}"), camera, inverse(rigid(R, t)))
+    return PosedCamera(extrinsics.at(f"T_{name}"), camera, inverse(rigid(R, t)))
 
 
 def _has(source: Source, start: str) -> bool:

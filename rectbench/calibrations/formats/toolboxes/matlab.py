@@ -22,7 +22,7 @@ import numpy as np
 
 from rectbench.calibrations import pose_file as pose
 from rectbench.calibrations.assembling import assembled, single
-from rectbench.calibrations.contract import CameraFormat, Given, RigFormat, View
+from rectbench.calibrations.contract import CameraFormat, Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents.faults import blaming
 from rectbench.calibrations.documents.numbers import checked_size
 from rectbench.calibrations.documents.sections import Section
@@ -106,8 +106,8 @@ def _check_agreement(file: Section, T: FloatArray) -> None:
         )
 
 
-def _read_view(source: Source, given: Given) -> View:
-    return View(source.path, _read_camera(source.document, given))
+def _read_posed(source: Source, given: Given) -> PosedCamera:
+    return PosedCamera(source.path, _read_camera(source.document, given))
 
 
 def _read_camera(section: Section, given: Given) -> Camera:
@@ -188,5 +188,5 @@ CAMERA_FORMAT = CameraFormat(
     "matlab-camera",
     "MATLAB fisheyeParameters or cameraParameters (JSON; two files and a pose)",
     lambda source: bool(source.keys) and _is_camera(source.document.values),
-    _read_view,
+    _read_posed,
 )

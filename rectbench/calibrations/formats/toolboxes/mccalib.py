@@ -10,8 +10,8 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from rectbench.calibrations.assembling import chosen, rig_of_views, single
-from rectbench.calibrations.contract import Given, RigFormat, View
+from rectbench.calibrations.assembling import chosen, rig_of_posed, single
+from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents.faults import blaming
 from rectbench.calibrations.documents.sections import Section
 from rectbench.calibrations.documents.sources import Source
@@ -38,10 +38,10 @@ def _read(sources: Sequence[Source], given: Given) -> Rig:
         raise InvalidInput(
             f"{sections[1].at('camera_group')} is not that of the other camera; expected one group of both"
         )
-    return rig_of_views([_read_view(section, given) for section in sections], given, source.name)
+    return rig_of_posed([_read_posed(section, given) for section in sections], given, source.name)
 
 
-def _read_view(section: Section, given: Given) -> View:
+def _read_posed(section: Section, given: Given) -> PosedCamera:
     kind = section.number("distortion_type", "0 or 1")
     if kind not in LENSES:
         raise section.fault("distortion_type", "0 (perspective) or 1 (fisheye)")
@@ -54,7 +54,7 @@ def _read_view(section: Section, given: Given) -> View:
     where = section.at("").removesuffix(".")
     with blaming(where):
         camera = Camera(CAMERA_MODELS[lens], size, params)
-    return View(where, camera, section.rigid("camera_pose_matrix", "the pose from camera to group"))
+    return PosedCamera(where, camera, section.rigid("camera_pose_matrix", "the pose from camera to group"))
 
 
 FORMAT = RigFormat(

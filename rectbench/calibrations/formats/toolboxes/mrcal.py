@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from rectbench.calibrations.contract import CameraFormat, Given, View
+from rectbench.calibrations.contract import CameraFormat, Given, PosedCamera
 from rectbench.calibrations.documents.faults import blaming, shown
 from rectbench.calibrations.documents.sections import Section
 from rectbench.calibrations.documents.sources import MAX_BYTES, Source, read_bytes
@@ -77,7 +77,7 @@ RECOGNISED = re.compile(
 )
 
 
-def read_view(source: Source, given: Given) -> View:
+def read_posed(source: Source, given: Given) -> PosedCamera:
     """The camera in the file, standing in mrcal's reference frame."""
     file = Section(source.path, "", parse(_text(source), source.path))
     key = next((key for key in LENS_KEYS if key in file), LENS_KEYS[0])
@@ -86,7 +86,7 @@ def read_view(source: Source, given: Given) -> View:
     size = file.size("imagersize", given.size)
     with blaming(f"{source.path}: intrinsics"):
         camera = Camera(model, size, dict(zip(names, numbers, strict=True)))
-    return View(source.path, camera, _pose(file))
+    return PosedCamera(source.path, camera, _pose(file))
 
 
 def _model(file: Section, key: str) -> tuple[str, tuple[str, ...]]:
@@ -242,6 +242,6 @@ FORMAT = CameraFormat(
     "mrcal",
     "mrcal .cameramodel (two files)",
     _recognises,
-    read_view,
+    read_posed,
     write=Writing(_texts, in_folder=True),
 )

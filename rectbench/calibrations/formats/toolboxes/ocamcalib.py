@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 from numpy.polynomial import Polynomial
 
-from rectbench.calibrations.contract import CameraFormat, Given, View
+from rectbench.calibrations.contract import CameraFormat, Given, PosedCamera
 from rectbench.calibrations.documents.faults import blaming, shown
 from rectbench.calibrations.documents.numbers import checked_size, finite_number
 from rectbench.calibrations.documents.sources import Source
@@ -27,7 +27,7 @@ from rectbench.calibrations.pose_file import pose_text
 from rectbench.cameras import Camera
 from rectbench.cameras.lens import lens_named
 from rectbench.errors import InvalidInput
-from rectbench.rigs.file_formats import NotHeld, Writing, lost_angles
+from rectbench.rigs.file_formats import CannotHold, Writing, lost_angles
 from rectbench.rigs.rig import Rig
 
 BLOCKS = (
@@ -74,7 +74,7 @@ def stretched(
         }
 
 
-def read_view(source: Source, given: Given) -> View:
+def read_posed(source: Source, given: Given) -> PosedCamera:
     """The camera in the file; it does not tell its pose."""
     poly, inverse_poly, centre, affine, sides = _blocks(source)
     row, column = centre
@@ -87,7 +87,7 @@ def read_view(source: Source, given: Given) -> View:
     # The direct polynomial is the calibrated one; the other is a fit to it.
     params = {"cx": column, "cy": row, "c": c, "d": d, "e": e, "poly": poly, "inverse_poly": inverse_poly}
     with blaming(source.path):
-        return View(source.path, Camera("ocam", size, params))
+        return PosedCamera(source.path, Camera("ocam", size, params))
 
 
 def _blocks(source: Source) -> list[list[float]]:
@@ -132,7 +132,7 @@ def _text(camera: Camera, side: str) -> str:
     _, camera = layout_of(camera, LAYOUTS, "ocamcalib", side)
     p = camera.params
     if not p["poly"]:
-        raise NotHeld(f"ocamcalib has no place for the {side} camera, ocam with inverse_poly and no poly")
+        raise CannotHold(f"ocamcalib has no place for the {side} camera, ocam with inverse_poly and no poly")
     sign = -math.copysign(1.0, p["poly"][0])  # OCamCalib looks along -z
     inverse_poly, _ = _inverse_of(camera)
     blocks = (
@@ -193,6 +193,6 @@ FORMAT = CameraFormat(
     "ocamcalib",
     "OCamCalib calib_results.txt (two files and a pose)",
     _recognises,
-    read_view,
+    read_posed,
     write=Writing(_texts, in_folder=True, losses=_losses),
 )
