@@ -17,11 +17,11 @@ if TYPE_CHECKING:
     from rectbench.applications.conformance import Finding as CheckFinding
     from rectbench.applications.doctor import Finding
     from rectbench.applications.rectified_images import RectifiedImages
-    from rectbench.experiments.comparing import Comparison
-    from rectbench.experiments.gating import Verdict
     from rectbench.matching import PoseEstimate
     from rectbench.metrics import Uncertainty
     from rectbench.rigs import Rig, RigCovariance
+    from rectbench.runs.comparing import Comparison
+    from rectbench.runs.gating import Verdict
 
 WIDE = 160
 """Columns assumed where the output is no terminal, so that a pipe gets whole lines."""
@@ -121,8 +121,8 @@ def _plain(default: Any) -> str:
 
 def show_summary(folder: Path) -> None:
     """The main tables of a run, and where its page is."""
-    from rectbench.reporting.run_folder import read_run
     from rectbench.reporting.tables.tabulation import main_tables
+    from rectbench.runs.run import read_run
 
     screen, found = console(), read_run(folder)
     for summary in main_tables(found):

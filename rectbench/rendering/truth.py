@@ -34,6 +34,16 @@ class Truth:
     """Depth and visibility at the pixel centres of both cameras, and all that follows from them.
 
     Raises InvalidInput for arrays that are not of the cameras' sizes.
+
+    >>> import numpy as np
+    >>> import rectbench as rb
+    >>> camera = rb.Camera("pinhole", (160, 120), {"fx": 120, "fy": 120, "cx": 79.5, "cy": 59.5})
+    >>> rig = rb.Rig(camera, camera, np.eye(3), [-0.1, 0, 0])
+    >>> depth, seen = np.full((120, 160), 2.0), np.ones((120, 160), bool)
+    >>> truth = rb.Truth(rig, depth, depth, seen, seen)
+    >>> px_left, px_right = truth.matches(100)
+    >>> px_left.shape, bool(np.allclose(px_left[:, 1], px_right[:, 1]))
+    ((100, 2), True)
     """
 
     rig: Rig

@@ -1,7 +1,8 @@
-"""Whatever a calibration's files hold, loading them gives a rig or one line, soon and in little memory.
+"""Whatever a calibration's files hold, loading them ends with a rig or one line, in little memory.
 
-`RECTBENCH_FUZZ=10000 pytest tests/rigs/test_fuzzing.py` tries so many inputs of each format, and cuts each
-file short at every byte. A hang ends with the stack of what it hangs in; the input lies in the test's folder.
+`RECTBENCH_FUZZ=10000 pytest tests/calibrations/test_fuzzing.py` tries so many inputs of each format,
+and cuts each file short at every byte. A hang ends with the stack of what it hangs in; the input lies in the
+test's folder.
 """
 
 from __future__ import annotations
@@ -10,7 +11,6 @@ import base64
 import faulthandler
 import os
 import resource
-import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -28,7 +28,6 @@ from tests.calibrations.test_colmap import COLMAP_BINARY, COLMAP_TEXT
 from tests.calibrations.test_mrcal import OPENCV8, RT_LEFT, RT_RIGHT, cameramodel
 
 INPUTS = int(os.environ.get("RECTBENCH_FUZZ", "25"))
-LONGEST_S = 1.0
 HANGS_S = 60.0
 MOST_BYTES = 200 << 20
 
@@ -129,9 +128,7 @@ def test_damaged_files_give_a_rig_or_one_line(tmp_path: Path, name: str) -> None
     for what, file, content in inputs(name):
         (tmp_path / file).write_bytes(content)
         faulthandler.dump_traceback_later(HANGS_S, exit=True)
-        start = time.process_time()
         grown = growth(lambda what=what: check_rig_or_one_line(paths, calibration.options, what))
-        assert time.process_time() - start < LONGEST_S, what
         assert grown < MOST_BYTES, what
         (tmp_path / file).write_bytes(calibration.files[file])
 

@@ -6,53 +6,14 @@ here (a plugin's own, a newer one) is shown too, under a heading made from its n
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Literal
-
-Average = Literal["mean", "rms", "max", "min"]
-
-
-@dataclass(frozen=True)
-class Column:
-    """How one metric of the rows is shown.
-
-    Parameters
-    ----------
-    key : the column's name in `results.parquet`.
-    heading, unit : what stands above it; the shown number is the stored one times `scale`.
-    better : which way is good, None where neither is.
-    average : how cells are averaged. RMS values are pooled as such, a maximum stays one.
-    floor : shown numbers below this are shown as "<floor".
-    is_count : whether the number counts things, and is shown whole.
-    meaning : one sentence for the glossary.
-    """
-
-    key: str
-    heading: str
-    unit: str = ""
-    better: Literal["lower", "higher"] | None = None
-    meaning: str = ""
-    scale: float = 1.0
-    average: Average = "mean"
-    floor: float = 0.0
-    is_count: bool = False
-
-    @property
-    def is_percentage(self) -> bool:
-        """Whether the number is a share, shown with one decimal."""
-        return self.unit == "%"
-
-    @property
-    def full_heading(self) -> str:
-        """Heading with the unit in brackets."""
-        return f"{self.heading} [{self.unit}]" if self.unit else self.heading
+from rectbench.plugins.metric import Average, Better, Column
 
 
 def _pixels(key: str, heading: str, meaning: str, average: Average = "mean") -> Column:
     return Column(key, heading, "px", "lower", meaning, average=average, floor=1e-6)
 
 
-def _share(key: str, heading: str, better: Literal["lower", "higher"] | None, meaning: str) -> Column:
+def _share(key: str, heading: str, better: Better | None, meaning: str) -> Column:
     return Column(key, heading, "%", better, meaning, scale=100.0)
 
 

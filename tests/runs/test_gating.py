@@ -10,9 +10,9 @@ import pytest
 
 import rectbench as rb
 from rectbench.experiments.execution.outcomes import Outcome
-from rectbench.experiments.gating import Tolerance, accept, accepted_path, gate
 from rectbench.experiments.planning import make_plan
-from rectbench.experiments.run_folder import facts_of, table_of, write_run
+from rectbench.runs.gating import Tolerance, accept, accepted_path, gate
+from rectbench.runs.record import facts_of, table_of, write_run
 from tests.experiments.fakes import small_report, write_report_file
 
 METRICS = {"row_error_mean_px": 0.1, "log_distortion": 0.25, "coverage_pixels": 0.9, "fit_s": 0.01}

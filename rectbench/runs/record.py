@@ -68,7 +68,9 @@ def table_of(plan: Plan, outcomes: Sequence[Outcome]) -> pd.DataFrame:
     for task, outcome in zip(plan.tasks, outcomes, strict=True):
         ended = {"status": outcome.status, "reason": outcome.reason}
         notes = json.dumps(dict(outcome.notes), sort_keys=True, default=str)
-        rows.append({**asdict(task.cell), **ended, "group": task.group, **outcome.metrics, "notes": notes})
+        rows.append(
+            {**task.cell.model_dump(), **ended, "group": task.group, **outcome.metrics, "notes": notes}
+        )
     measured = dict.fromkeys(name for outcome in outcomes for name in outcome.metrics)
     metrics = [*PROMISED, *(name for name in measured if name not in PROMISED)]
     table = pd.DataFrame(rows, columns=[*LEADING, "group", *metrics, "notes"])
@@ -95,7 +97,7 @@ def facts_of(plan: Plan) -> dict[str, Any]:
         "spec": plan.report.model_dump(mode="json"),
         "figures": plan.report.figures,
         **_photograph_facts(plan),
-        "cells": [task.to_json() for task in plan.tasks],
+        "cells": [task.model_dump(mode="json") for task in plan.tasks],
     }
 
 

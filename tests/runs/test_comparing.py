@@ -7,10 +7,10 @@ import pandas as pd
 import pytest
 
 import rectbench as rb
-from rectbench.experiments.comparing import compare
 from rectbench.experiments.execution.outcomes import Outcome
 from rectbench.experiments.planning import make_plan
-from rectbench.experiments.run_folder import facts_of, table_of, write_run
+from rectbench.runs.comparing import compare
+from rectbench.runs.record import facts_of, table_of, write_run
 from tests.experiments.fakes import small_report
 
 SEEDS = tuple(range(12))

@@ -10,8 +10,8 @@ import numpy as np
 import pandas as pd
 from scipy.stats import bootstrap
 
-from rectbench.experiments.gating import KEY
-from rectbench.experiments.run_folder import LEADING, TEXTS, read_results
+from rectbench.runs.gating import KEY
+from rectbench.runs.record import LEADING, TEXTS, read_results
 from rectbench.types import FloatArray
 
 CONFIDENCE = 0.95

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from rectbench.errors import InvalidInput
-from rectbench.reporting.columns import in_display_order
+from rectbench.metrics.catalogue import in_display_order
 
 IDENTITY = ("report", "scene", "rig", "motion", "pose", "method", "options", "seed", "status", "reason")
 """The columns that say which cell a row is and how it ended; all other numbers are metrics."""

@@ -11,9 +11,9 @@ from pathlib import Path
 from rectbench.calibrations import holds_many, is_calibration, load_rig
 from rectbench.errors import InvalidInput
 from rectbench.images.reading import Grey, grey8, read_image
-from rectbench.pairs.finding.data_manifest import Manifest
 from rectbench.pairs.finding.image_circle import angle_of_mask_deg, angle_of_rim_deg
-from rectbench.pairs.finding.pairing import FilePair, LeftOut, camera_numbers, paired_files
+from rectbench.pairs.finding.manifest import Manifest
+from rectbench.pairs.finding.names import FilePair, LeftOut, camera_numbers, paired_files
 from rectbench.rigs import Rig
 
 SUFFIXES = frozenset({".yaml", ".yml", ".xml", ".json", ".txt", ".bin", ".cameramodel", ".cfg", ".conf"})
@@ -22,7 +22,7 @@ TOLD_SUFFIXES = SUFFIXES - {".txt", ".bin"}
 RIM_IMAGES = 8
 """Pairs of a rig that the rim of its lenses is looked for in."""
 UNSTATED_UNIT = "mm"
-"""What a baseline is in that is too long for metres and has no unit: no number of the report hangs on it."""
+"""What a baseline is in that is too long for metres and has no unit: no number of the report depends on it."""
 
 
 @dataclass(frozen=True)
