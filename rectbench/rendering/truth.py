@@ -17,13 +17,14 @@ from zipfile import BadZipFile
 import numpy as np
 from numpy.typing import NDArray
 
-from rectbench.calibrations.native import dump, read_native, rig_fields
+from rectbench.calibrations.formats.native import read_native, rig_fields
 from rectbench.cameras import Camera
 from rectbench.cameras.projection import BoolArray
 from rectbench.errors import InvalidInput
 from rectbench.rendering.variant import mitsuba
 from rectbench.rigs.rig import Rig
 from rectbench.types import FloatArray
+from rectbench.yaml_text import yaml_text
 
 SIDES = ("left", "right")
 
@@ -132,7 +133,7 @@ class Truth:
         if derived:
             arrays |= {f"{name}_{side}": a for side, layers in self._layers() for name, a in layers.items()}
         with Path(path).open("wb") as file:
-            np.savez(file, rig=np.array(dump(rig_fields(self.rig))), **arrays)
+            np.savez(file, rig=np.array(yaml_text(rig_fields(self.rig))), **arrays)
 
     @classmethod
     def load(cls, path: str | Path) -> Truth:

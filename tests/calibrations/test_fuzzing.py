@@ -20,7 +20,8 @@ import numpy as np
 import pytest
 
 from rectbench import RectbenchError, Rig, load_rig
-from rectbench.calibrations.native import dump, rig_fields
+from rectbench.calibrations.formats.native import rig_fields
+from rectbench.yaml_text import yaml_text
 from tests.calibrations.examples import EXAMPLES, FISHEYES, Example
 from tests.calibrations.mutations import damaged
 from tests.calibrations.test_colmap import COLMAP_BINARY, COLMAP_TEXT
@@ -50,7 +51,7 @@ BINARIES = {f"{kind}.bin": base64.b64decode(COLMAP_BINARY[kind]) for kind in COL
 MRCAL = {"left.cameramodel": RT_LEFT, "right.cameramodel": RT_RIGHT}
 CALIBRATIONS: dict[str, Calibration] = {
     **{name: encoded(example) for name, example in EXAMPLES.items()},
-    "native": Calibration({"native.yaml": dump(rig_fields(FISHEYES)).encode()}),
+    "native": Calibration({"native.yaml": yaml_text(rig_fields(FISHEYES)).encode()}),
     "mrcal": Calibration(
         {name: cameramodel("LENSMODEL_OPENCV8", OPENCV8, rt).encode() for name, rt in MRCAL.items()}
     ),
