@@ -12,15 +12,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rectbench.errors import InvalidInput, InvalidResult, RectbenchError
+from rectbench.experiments.execution.cells import cell_inputs, problem_of
 from rectbench.experiments.tasks import Cell, CellTask
 from rectbench.metrics import Jacobians, distortion, distortion_of
-from rectbench.pairs.spec import PairSpec
-from rectbench.reporting import recall
-from rectbench.reporting.recall import KnownPair
+from rectbench.pairs.opening import open_pair
+from rectbench.pairs.pair import Pair
+from rectbench.plugins.fitting import checked_options, fit
+from rectbench.plugins.rectifier import METHODS
+from rectbench.registry import registry
 from rectbench.rigs import Rig
 from rectbench.runs.record import RUN_FILE
 from rectbench.runs.rows import Row
 from rectbench.runs.run import Run
+from rectbench.store.keys import digest
+from rectbench.store.store import Store
 from rectbench.types import FloatArray
 from rectbench.warps import Rectification
 
@@ -55,7 +60,7 @@ class Sources:
     version : changes with whatever changes those answers while the cell's row stays the same.
     """
 
-    pair: Callable[[Row], KnownPair]
+    pair: Callable[[Row], Pair]
     rectification: Callable[[Row], Rectification]
     distortion: Callable[[Rectification, Rig, Side, FloatArray], FloatArray]
     reconstruction: Callable[[Row], Cloud]
@@ -89,8 +94,9 @@ class _Recalled:
 
     def __init__(self, run: Run) -> None:
         self._run = run
+        self._store = Store.default()
         self._fitted: dict[Cell, Rectification] = {}
-        self._pair: tuple[PairSpec, KnownPair] | None = None
+        self._pair: Pair | None = None
 
     @cached_property
     def _tasks(self) -> dict[Cell, CellTask]:
@@ -103,15 +109,15 @@ class _Recalled:
             raise InvalidInput(f"{file} does not plan {result.method} on {result.pair}")
         return task
 
-    def pair(self, result: Row) -> KnownPair:
-        task = self._task(result)
-        if self._pair is None or self._pair[0] != task.pair:
-            self._pair = task.pair, recall.recalled_pair(task)
-        return self._pair[1]
+    def pair(self, result: Row) -> Pair:
+        spec = self._task(result).pair
+        if self._pair is None or self._pair.spec != spec:
+            self._pair = open_pair(spec, self._store)
+        return self._pair
 
     def rectification(self, result: Row) -> Rectification:
         if result.cell not in self._fitted:
-            rectification = recall.recalled_rectification(self._task(result))
+            rectification = _fitted_again(self._task(result), self.pair(result))
             _require_same(rectification, result)
             self._fitted[result.cell] = rectification
         return self._fitted[result.cell]
@@ -124,9 +130,15 @@ class _Recalled:
 
     def version(self, result: Row) -> str:
         try:
-            return recall.recalled_version(self._task(result))
+            pair = self.pair(result)
+            return digest([cell_inputs(self._task(result), pair), pair.image_inputs])
         except RectbenchError as error:  # a plugin or a rig that is not on this machine
             return str(error)
+
+
+def _fitted_again(task: CellTask, pair: Pair) -> Rectification:
+    method = registry(METHODS).get(task.method_source)
+    return fit(method, problem_of(task, pair), checked_options(method, task.options))
 
 
 def _require_same(rectification: Rectification, result: Row) -> None:

@@ -1,14 +1,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
 from rectbench.errors import InvalidResult
 from rectbench.metrics import distortion
-from rectbench.reporting import recall, sources
+from rectbench.reporting import sources
 from rectbench.reporting.sources import sources_of
 from rectbench.runs.run import Run, read_run
 from tests.reporting.runs import fake_rectification, fake_rig, make_row
@@ -23,14 +25,15 @@ def run_of(write_run: Callable[..., Path], monkeypatch: pytest.MonkeyPatch) -> C
 
     def read(native: float) -> Run:
         row = make_row("street", "t265", "exact", "abraham", distortion_native=native)
-        monkeypatch.setattr(recall, "recalled_rectification", refit)
         run = read_run(write_run([row]))
-        monkeypatch.setattr(sources._Recalled, "_task", lambda recalled, row: "the task")
-        return run
+        planned = SimpleNamespace(cell=run.results[0].cell, pair="the pair")
+        monkeypatch.setattr(sources, "open_pair", lambda spec, store: SimpleNamespace(spec=spec))
+        monkeypatch.setattr(sources, "_fitted_again", refit)
+        return replace(run, record=run.record.model_copy(update={"cells": (planned,)}))
 
     fits: list[Any] = []
 
-    def refit(task: Any) -> Any:
+    def refit(task: Any, pair: Any) -> Any:
         fits.append(task)
         assert len(fits) == 1, "fitted twice"
         return RECTIFICATION
@@ -40,9 +43,9 @@ def run_of(write_run: Callable[..., Path], monkeypatch: pytest.MonkeyPatch) -> C
 
 def test_a_cell_is_fitted_once_for_all_its_pictures(run_of: Callable[[float], Run]) -> None:
     run = run_of(float(distortion(RECTIFICATION, RIG)))
-    sources = sources_of(run)
-    assert sources.rectification(run.results[0]) is RECTIFICATION
-    assert sources.rectification(run.results[0]) is RECTIFICATION
+    found = sources_of(run)
+    assert found.rectification(run.results[0]) is RECTIFICATION
+    assert found.rectification(run.results[0]) is RECTIFICATION
 
 
 def test_a_refit_that_is_not_what_the_run_measured_is_no_picture_of_it(
