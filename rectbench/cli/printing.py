@@ -74,7 +74,7 @@ def show_names(kind: str, verbose: bool) -> None:
 
 def _described(kind: str) -> list[tuple[str, str]]:
     from rectbench.calibrations import load_rig, rig_names
-    from rectbench.experiments.spec import ESTIMATED
+    from rectbench.pairs.spec import ESTIMATED
     from rectbench.rigs import MOTIONS, POSES
 
     if kind == "motions":

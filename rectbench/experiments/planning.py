@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from collections import defaultdict
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -11,10 +12,10 @@ from typing import Any
 from rectbench.errors import InvalidInput
 from rectbench.experiments.naming import plugins_named, require_known
 from rectbench.experiments.pair_sources import PairName, PairSource, Part
-from rectbench.experiments.spec import ESTIMATED, REPORTS, Report
+from rectbench.experiments.spec import REPORTS, Report
 from rectbench.experiments.tasks import Cell, CellTask
 from rectbench.pairs.finding.photographs import Photographs
-from rectbench.pairs.spec import PairSpec, RenderedSpec
+from rectbench.pairs.spec import ESTIMATED, PairSpec
 from rectbench.plugins.fitting import checked_options
 from rectbench.plugins.rectifier import METHODS, Rectifier
 from rectbench.registry import Plugin, registry
@@ -163,19 +164,11 @@ def _tasks_of(
 
 def _sharing_pairs(tasks: Collection[CellTask]) -> Iterator[CellTask]:
     """The tasks, those of different parts on one pair sharing one task for it, so that it is made once."""
-    wanted: dict[RenderedSpec, RenderedSpec] = {}
-    for pair in (task.pair for task in tasks):
-        if isinstance(pair, RenderedSpec):
-            bare = pair.model_copy(update={"truth": False, "images": False})
-            known = wanted.get(bare, bare)
-            wanted[bare] = bare.model_copy(
-                update={"truth": pair.truth or known.truth, "images": pair.images or known.images}
-            )
+    demands: dict[PairSpec, set[str]] = defaultdict(set)
     for task in tasks:
-        pair = task.pair
-        if isinstance(pair, RenderedSpec):
-            pair = wanted[pair.model_copy(update={"truth": False, "images": False})]
-        yield task.model_copy(update={"pair": pair})
+        demands[task.pair.demanding(())] |= task.pair.demands
+    for task in tasks:
+        yield task.model_copy(update={"pair": task.pair.demanding(demands[task.pair.demanding(())])})
 
 
 def _chosen_names(chosen: Sequence[Any] | None, own: Sequence[Any]) -> list[Any]:

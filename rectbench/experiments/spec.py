@@ -19,6 +19,7 @@ from rectbench.experiments.pair_sources import (
     Rendering,
     StatedPairs,
 )
+from rectbench.pairs.spec import CALIBRATED, ESTIMATED
 from rectbench.registry.kind import Described, Kind
 
 Metric = Literal[
@@ -50,10 +51,6 @@ OptionSets = Annotated[Mapping[str, tuple[dict[str, Any], ...]], BeforeValidator
 IMAGE_METRICS = frozenset({"row_error_features", "row_error_board", "reconstruction"})
 TRUTH_METRICS = frozenset({"row_error", "reconstruction"})
 IMAGE_FIGURES = frozenset({"pairs", "clouds"})
-ESTIMATED = "estimated"
-"""The pose that is estimated from the images themselves."""
-CALIBRATED = "calibrated"
-"""The pose as a calibration states it, of which nobody knows how exact it is: that of photographs."""
 
 
 class Group(BaseModel):

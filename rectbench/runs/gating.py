@@ -15,8 +15,9 @@ from typing import Literal
 import pandas as pd
 
 from rectbench.errors import InvalidInput, UnknownName
-from rectbench.experiments.spec import ESTIMATED, REPORTS
+from rectbench.experiments.spec import REPORTS
 from rectbench.experiments.tasks import IDENTITY, Cell
+from rectbench.pairs.spec import ESTIMATED
 from rectbench.registry import registry
 from rectbench.runs.record import read_record
 from rectbench.runs.rows import Row, read_rows
