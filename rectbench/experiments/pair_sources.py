@@ -63,14 +63,14 @@ class Part:
 
 
 @dataclass(frozen=True)
-class Rendered:
-    """Pairs that are rendered, so that any rig can stand in any scene."""
-
+class _Source:
     parts: tuple[Part, ...]
+    found: Photographs | None = None
+    """What is in the folder, for photographs once they are located."""
 
     stated_by: ClassVar[str]
     """The field of a report that states such pairs."""
-    needs: ClassVar[tuple[str, ...]]
+    needs: ClassVar[tuple[str, ...]] = ()
     """Fields that must not be empty then,"""
     excludes: ClassVar[tuple[str, ...]] = ()
     """and those that must be:"""
@@ -78,11 +78,14 @@ class Rendered:
     """what is expected in their place."""
     has_truth: ClassVar[bool] = True
     """Whether anybody knows the truth about the pairs."""
-    scene_word: ClassVar[str] = "scene"
-    """What the first name of a pair is the name of."""
     takes_foreign_names: ClassVar[bool] = True
     """Whether a run may have scenes and rigs that the report does not name."""
-    found: ClassVar[None] = None
+    scene_word: ClassVar[str] = "scene"
+    """What the first name of a pair is the name of."""
+
+
+class Rendered(_Source):
+    """Pairs that are rendered, so that any rig can stand in any scene."""
 
     def located(self, report: str, data: str | Path | None) -> Self:
         """The same; raises InvalidInput for a folder of photographs, which nobody needs."""
@@ -132,25 +135,20 @@ class Grouped(Rendered):
     """Groups, each with pairs and methods of its own."""
 
     stated_by = "groups"
-    needs = ()
     excludes = ("scenes", "rigs", "methods", "options", "pairs")
     expected = "expected them in the groups"
 
 
-@dataclass(frozen=True)
-class Photographed:
+class Photographed(_Source):
     """Pairs of photographs, found in a folder that each run names."""
 
-    parts: tuple[Part, ...]
-    found: Photographs | None = None
-
-    stated_by: ClassVar[str] = "photographs"
-    needs: ClassVar[tuple[str, ...]] = ("methods",)
-    excludes: ClassVar[tuple[str, ...]] = ("scenes", "rigs", "pairs", "groups")
-    expected: ClassVar[str] = "expected pairs found in a folder"
-    has_truth: ClassVar[bool] = False
-    scene_word: ClassVar[str] = "pair"
-    takes_foreign_names: ClassVar[bool] = False
+    stated_by = "photographs"
+    needs = ("methods",)
+    excludes = ("scenes", "rigs", "pairs", "groups")
+    expected = "expected pairs found in a folder"
+    has_truth = False
+    takes_foreign_names = False
+    scene_word = "pair"
 
     def located(self, report: str, data: str | Path | None) -> Photographed:
         """The same with the pairs in the folder `data`; raises InvalidInput where there are none."""

@@ -67,7 +67,7 @@ GATED: dict[str, Tolerance] = {
     "pose_rotation_error_deg": Tolerance("lower", 0.05, 0.002),
     "pose_direction_error_deg": Tolerance("lower", 0.05, 0.01),
 }
-"""The gated columns. Relative where rounding and libraries move the last digits of a fit; features hang
+"""The gated columns. Relative where rounding and libraries move the last digits of a fit; features depend
 on the detector's version most of all."""
 
 ESTIMATED_SLACK = 10.0

@@ -33,8 +33,6 @@ class Measured:
     label: str
     clause: str
     """The part of the claim it measures; empty where the claim is one."""
-    quantity: str
-    """What the number is: a column, or a ratio of two methods' columns."""
     mean: float
     low: float
     high: float
@@ -97,7 +95,6 @@ def _measured(statement: Statement, rows: Sequence[Row]) -> Measured:
     return Measured(
         label=statement.label,
         clause=statement.clause,
-        quantity=_quantity(statement),
         mean=mean,
         low=low,
         high=high,
@@ -113,15 +110,6 @@ def _measured(statement: Statement, rows: Sequence[Row]) -> Measured:
 def _pairs_needed(statement: Statement) -> float:
     """Of how many pairs a statement speaks at least; a run of fewer does not measure it."""
     return max(1.0, statement.above or 0.0) if statement.measure == "wins" else 1.0
-
-
-def _quantity(statement: Statement) -> str:
-    if statement.measure == "wins":
-        return f"pairs on which {statement.method} has the least {statement.metric}"
-    if statement.against is None:
-        return f"{statement.metric} of {statement.method}"
-    ratio = f"{statement.metric}, {statement.method} / {statement.against}"
-    return f"share of {ratio} in {statement.within}" if statement.measure == "share" else ratio
 
 
 def _numbers(statement: Statement, rows: Sequence[Row]) -> tuple[list[FloatArray], int]:

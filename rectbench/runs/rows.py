@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
 
+import pandas as pd
 from pydantic import ConfigDict, Field, Json, ValidationError, field_validator
 
 from rectbench.errors import InvalidInput
@@ -108,7 +109,7 @@ def read_rows(table: Iterable[Mapping[Any, Any]], path: Path) -> tuple[Row, ...]
     """
     stored = []
     for number, values in enumerate(table, 1):
-        given = {name: value for name, value in values.items() if value is not None and value == value}
+        given = {str(name): value for name, value in values.items() if not _is_empty(value)}
         try:
             stored.append(_StoredRow.model_validate(given))
         except ValidationError as error:
@@ -130,6 +131,10 @@ def read_rows(table: Iterable[Mapping[Any, Any]], path: Path) -> tuple[Row, ...]
         )
         for row in stored
     )
+
+
+def _is_empty(value: Any) -> bool:
+    return bool(pd.api.types.is_scalar(value) and pd.isna(value))
 
 
 def distinct(items: Iterable[Item]) -> tuple[Item, ...]:

@@ -79,7 +79,7 @@ class Run:
 
     @property
     def noisy_poses(self) -> tuple[str, ...]:
-        """The poses whose row errors say something; the exact one if there is no other."""
+        """The poses whose row errors tell methods apart; the exact one if there is no other."""
         return tuple(pose for pose in self.poses if pose != EXACT_POSE) or self.poses
 
     @property

@@ -142,6 +142,8 @@ def test_rows_without_optional_columns_are_read(folder: Path) -> None:
         ("options", "{", "row 1: options is '{'"),
         ("notes", "{", "row 1: notes is '{'"),
         ("fit_s", "slow", "row 1: fit_s is 'slow'; expected a valid number"),
+        ("fit_s", [1.0, 2.0], "row 1: fit_s is array([1., 2.]); expected a valid number"),
+        ("seed", pd.NA, "row 1: seed is missing"),
     ],
 )
 def test_an_entry_that_cannot_be_is_named_by_row_and_column(

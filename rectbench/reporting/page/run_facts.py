@@ -40,10 +40,8 @@ def run_facts(run: Run) -> list[Fact]:
     return [*facts, Fact("Versions", ", ".join(present))]
 
 
-KINDS = ("bars", "scatter", "pairs", "maps", "energy", "starts", "squares", "clouds", "timing")
-"""The kinds of figures; a report, or a part of one, may ask for some of them."""
 USUAL_KINDS = ("bars", "scatter", "pairs", "maps")
-"""Those of a report that asks for none: what every method and every report has."""
+"""The kinds of figures of a report that asks for none: what every method and every report has."""
 
 
 def wanted_kinds(run: Run) -> tuple[str, ...]:
