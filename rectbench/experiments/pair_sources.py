@@ -1,4 +1,8 @@
-"""Where a report's pairs come from: they are rendered, or photographs found in a folder."""
+"""Where a report's pairs come from: they are rendered, or photographs found in a folder.
+
+What looks names and files up is imported where it is used, so that stating a report, and listing reports,
+loads none of it.
+"""
 
 from __future__ import annotations
 
@@ -6,16 +10,15 @@ import itertools
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, ClassVar, Literal, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field
 
 from rectbench.errors import InvalidInput
-from rectbench.experiments.naming import plugins_named, require_known, rigs_named
-from rectbench.pairs.finding.photographs import Photographs, find_photographs
 from rectbench.pairs.spec import AS_CALIBRATED, PhotographedSpec, RenderedSpec
-from rectbench.plugins.scene import SCENES
-from rectbench.rigs.motions import MOTIONS
+
+if TYPE_CHECKING:
+    from rectbench.pairs.finding.photographs import Photographs
 
 PairName = tuple[str, str, str]
 """Scene, rig, motion."""
@@ -95,6 +98,10 @@ class Rendered(_Source):
 
     def specs(self, part: Part) -> Iterator[RenderedSpec]:
         """What is to be rendered for a part; raises UnknownName for a scene, rig or motion that is none."""
+        from rectbench.experiments.naming import plugins_named, require_known, rigs_named
+        from rectbench.plugins.scene import SCENES
+        from rectbench.rigs.motions import MOTIONS
+
         names = dict.fromkeys(scene for scene, _, _ in part.pairs)
         scenes = {name: plugins_named(SCENES, [name])[0] for name in names}
         rigs = rigs_named(dict.fromkeys(rig for _, rig, _ in part.pairs))
@@ -152,6 +159,8 @@ class Photographed(_Source):
 
     def located(self, report: str, data: str | Path | None) -> Photographed:
         """The same with the pairs in the folder `data`; raises InvalidInput where there are none."""
+        from rectbench.pairs.finding.photographs import find_photographs
+
         if data is None:
             raise InvalidInput(f"report {report} takes photographs; expected a folder of them, --data FOLDER")
         found = find_photographs(data)
