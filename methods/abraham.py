@@ -2,8 +2,6 @@
 
 from typing import Literal
 
-import numpy as np
-
 import rectbench as rb
 
 
@@ -27,11 +25,5 @@ class Abraham(rb.Rectifier):
     def fit(self, problem: rb.Problem, options: Options) -> rb.Rectification:
         rb.refuse_epipole_in_view(problem.rig)
         focal = options.focal_px or rb.centre_resolution_px(problem.rig)
-        view = rb.view_angles(problem.rig)
         u, v = rb.Radial(options.law, focal, 0.0), rb.Radial("equidistant", focal, 0.0)
-        left_edge, top_edge = float(u(view.gamma.low)), float(v(view.beta.low))
-        size = int(np.ceil(u(view.gamma.high) - left_edge)), int(np.ceil(v(view.beta.high) - top_edge))
-        target = rb.Epipolar(
-            rb.Radial(options.law, focal, -0.5 - left_edge), rb.Radial("equidistant", focal, -0.5 - top_edge)
-        )
-        return rb.Rectification.from_targets(problem.rig, target, target, size, {"focal_px": focal})
+        return rb.Rectification.from_profiles(problem.rig, u, u, v, {"focal_px": focal})

@@ -66,16 +66,11 @@ class LocalHomography(rb.Rectifier):
         left, right, rows = coefficients(found.x).reshape(3, 3)
         if options.columns == "shared":
             right = left
-        u_left, u_right = place((left, right), (bounds.gamma_left, bounds.gamma_right))
-        (v,) = place((rows,), (bounds.beta,))
-        width = max(u_left(bounds.gamma_left.high), u_right(bounds.gamma_right.high)) + 0.5
-        size = int(np.ceil(width)), int(np.ceil(v(bounds.beta.high) + 0.5))
+        profiles = (rb.Cubic(0.0, *c, *span) for c, span in zip((left, right, rows), bounds, strict=True))
         notes: dict[str, float | str] = {"energy": float(found.fun), "iterations": float(found.nit)}
         if not found.success:
             notes["warning"] = f"the minimisation ended early: {found.message}"
-        return rb.Rectification.from_targets(
-            problem.rig, rb.Epipolar(u_left, v), rb.Epipolar(u_right, v), size, notes
-        )
+        return rb.Rectification.from_profiles(problem.rig, *profiles, notes, view=bounds)
 
 
 class Energy:
@@ -156,10 +151,3 @@ def slope_gradients(c: np.ndarray, bounds: rb.ViewAngles) -> np.ndarray:
     for k in range(3):
         gradients[k, :, k] = basis[k]
     return gradients.reshape(9, 9)
-
-
-def place(coefficients: tuple[np.ndarray, ...], ranges: tuple[tuple[float, float], ...]) -> list[rb.Cubic]:
-    """Cubics that share c0, chosen so that the least of them begins at the frame's edge, -0.5 px."""
-    unplaced = [rb.Cubic(0.0, *c, *span) for c, span in zip(coefficients, ranges, strict=True)]
-    c0 = -0.5 - min(float(cubic(cubic.low)) for cubic in unplaced)
-    return [rb.Cubic(c0, cubic.c1, cubic.c2, cubic.c3, cubic.low, cubic.high) for cubic in unplaced]
