@@ -5,7 +5,16 @@ from typing import Literal
 import rectbench as rb
 
 
-class Abraham(rb.Rectifier):
+class Options(rb.Options):
+    law: Literal["equidistant", "stereographic", "equisolid", "orthographic", "cylindrical"] = rb.option(
+        "equidistant", "the lens law r(γ) along the rows"
+    )
+    focal_px: float | None = rb.option(
+        None, "focal length f in px; the sources' centre resolution where left out", gt=0
+    )
+
+
+class Abraham(rb.Rectifier[Options]):
     """û = c_x + f r(γ), v̂ = c_y + f β with a classical lens law r; nothing is optimised."""
 
     name = "abraham"
@@ -13,14 +22,6 @@ class Abraham(rb.Rectifier):
         "Abraham and Förstner, Fish-eye-stereo calibration and epipolar rectification, "
         "ISPRS Journal of Photogrammetry and Remote Sensing 59(5), 2005",
     )
-
-    class Options(rb.Options):
-        law: Literal["equidistant", "stereographic", "equisolid", "orthographic", "cylindrical"] = rb.option(
-            "equidistant", "the lens law r(γ) along the rows"
-        )
-        focal_px: float | None = rb.option(
-            None, "focal length f in px; the sources' centre resolution where left out", gt=0
-        )
 
     def fit(self, problem: rb.Problem, options: Options) -> rb.Rectification:
         rb.refuse_epipole_in_view(problem.rig)

@@ -5,14 +5,14 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from scipy.linalg import rq
 
 from rectbench.cameras import Camera
 from rectbench.errors import Unsupported
-from rectbench.plugins.rectifier import Problem, Rectifier
+from rectbench.plugins.rectifier import OptionsT, Problem, Rectifier
 from rectbench.rigs import Rig
 from rectbench.types import FloatArray, Matches
 from rectbench.warps.frame import centre_resolution_px, refuse_epipole_in_view
@@ -83,18 +83,18 @@ def _ideal_pinhole(rig: Rig) -> Camera:
     return Camera("pinhole", size, {"fx": focal, "fy": focal, "cx": (width - 1) / 2, "cy": (height - 1) / 2})
 
 
-class HomographyRectifier(Rectifier):
+class HomographyRectifier(Rectifier[OptionsT]):
     """Base of the methods that find a pair of homographies from matches between pinhole images."""
 
     needs: ClassVar[frozenset[str]] = frozenset({"matches"})
 
     @abstractmethod
     def homographies(
-        self, view: PinholeView, options: Any
+        self, view: PinholeView, options: OptionsT
     ) -> tuple[FloatArray, FloatArray, Mapping[str, float | str]]:
         """H_left, H_right [3, 3] from undistorted to rectified pixels, and the method's notes."""
 
-    def fit(self, problem: Problem, options: Any) -> Rectification:
+    def fit(self, problem: Problem, options: OptionsT) -> Rectification:
         """The homographies of the undistorted views, composed with the lenses."""
         refuse_epipole_in_view(problem.rig)
         view = PinholeView.of(problem)

@@ -26,8 +26,9 @@ from rectbench.applications.export.dataset_readme import readme_text
 from rectbench.errors import InvalidInput
 from rectbench.pairs.pairs import RENDERING_PACKAGES, placed, render_seed, set_stage
 from rectbench.pairs.rig_numbers import rig_numbers
+from rectbench.plugins.defaults import DEFAULT_METHOD
 from rectbench.plugins.fitting import checked_options, fit
-from rectbench.plugins.rectifier import METHODS, Options, pose_problem
+from rectbench.plugins.rectifier import METHODS, Options, Rectifier, pose_problem
 from rectbench.plugins.scene import SCENES
 from rectbench.progress import Progress
 from rectbench.registry import Plugin, registry
@@ -51,7 +52,7 @@ class Export:
     spp: int = 64
     quality: str = "path"
     image_width: int | None = None
-    method: str = "local-homography"
+    method: str = DEFAULT_METHOD
     options: Mapping[str, Any] = field(default_factory=dict)
 
     def settings(self) -> dict[str, Any]:
