@@ -82,7 +82,8 @@ def _public_names(file: Path) -> frozenset[str]:
 def _digests_of(names: frozenset[str]) -> str:
     """Of the sources behind public names; a verb of rectbench stands for all of it."""
     modules = {_homes()[name] for name in names if name in _homes()}
-    files = sorted(PACKAGE.rglob("*.py")) if _VERBS in modules else source_closure(*sorted(modules))
+    everything = _VERBS in modules
+    files = sorted(PACKAGE.rglob("*.py")) if everything else source_closure(*sorted(modules), root=PACKAGE)
     return digest({str(file.relative_to(PACKAGE)): file_digest(file) for file in files})
 
 
