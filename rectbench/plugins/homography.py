@@ -31,6 +31,12 @@ class PinholeView:
     Each image looks along its camera's axis. Both have the rig's mean resolution at the centre, the
     principal point in the middle and the larger camera's size, so that a method that assumes one
     focal length or a centred principal point is served; the field of view is stated in the notes.
+
+    >>> import rectbench as rb
+    >>> from rectbench.plugins.rectifier import pose_problem
+    >>> view = rb.PinholeView.of(pose_problem(rb.load_rig("t265")))
+    >>> view.size, round(view.fov_deg)
+    ((848, 800), 112)
     """
 
     matches: Matches
@@ -84,7 +90,15 @@ def _ideal_pinhole(rig: Rig) -> Camera:
 
 
 class HomographyRectifier(Rectifier[OptionsT]):
-    """Base of the methods that find a pair of homographies from matches between pinhole images."""
+    """Base of the methods that find a pair of homographies from matches between pinhole images.
+
+    >>> import numpy as np
+    >>> import rectbench as rb
+    >>> class Identity(rb.HomographyRectifier):
+    ...     name = "identity"
+    ...     def homographies(self, view, options):
+    ...         return np.eye(3), np.eye(3), {"matches": float(len(view.matches.left))}
+    """
 
     needs: ClassVar[frozenset[str]] = frozenset({"matches"})
 

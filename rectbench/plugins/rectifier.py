@@ -25,19 +25,39 @@ from rectbench.warps.warp import Warp
 
 
 class Options(BaseModel):
-    """Base of a rectifier's options: typed, checked, immutable; no unknown ones."""
+    """Base of a rectifier's options: typed, checked, immutable; no unknown ones.
+
+    >>> import rectbench as rb
+    >>> class ScaleOptions(rb.Options):
+    ...     scale: float = rb.option(1.0, "pixels of output for one of source", gt=0)
+    >>> ScaleOptions(scale=2)
+    ScaleOptions(scale=2.0)
+    """
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
 
 def option(default: Any, description: str, **limits: Any) -> Any:
-    """One option: its default, what it does, and its limits (`ge`, `gt`, `le`, `lt`)."""
+    """One option: its default, what it does, and its limits (`ge`, `gt`, `le`, `lt`).
+
+    See `Options` for an example.
+    """
     return Field(default, description=description, **limits)
 
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """All that a rectifier may know; never the truth."""
+    """All that a rectifier may know; never the truth.
+
+    >>> import rectbench as rb
+    >>> from rectbench.plugins.rectifier import pose_problem
+    >>> problem = pose_problem(rb.load_rig("t265"))
+    >>> problem.pixels_left.shape, problem.matches.left.shape
+    ((489, 2), (1999, 2))
+    >>> left, right = problem.angle_warps()
+    >>> left.forward(problem.pixels_left[:1]).round(2)  # γ and β, radians
+    array([[-0.88, -0.96]])
+    """
 
     rig: Rig
     """The rig as calibrated or estimated, which may be off."""

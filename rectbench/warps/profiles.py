@@ -22,7 +22,21 @@ ANGLE_SLACK_RAD = 1e-9
 
 
 class Profile(ABC):
-    """A rising function from an angle to a pixel coordinate, on a stated range of angles."""
+    """A rising function from an angle to a pixel coordinate, on a stated range of angles.
+
+    A subclass states two formulas in the language of `rb.Formulas`, and the numbers in them:
+
+    >>> import rectbench as rb
+    >>> class Mercator(rb.Profile):
+    ...     low, high = -1.5, 1.5
+    ...     constants = {"focal": 300.0, "low": -1.5, "high": 1.5}
+    ...     def value(self, c, angle, xp):
+    ...         return c.focal * xp.asinh(xp.tan(angle))
+    ...     def angle(self, c, value, xp):
+    ...         return xp.atan(xp.sinh(value / c.focal))
+    >>> Mercator()([0.0, 0.5]).round(2)
+    array([  0.  , 156.67])
+    """
 
     low: float
     """Least angle, radians."""
@@ -84,7 +98,12 @@ class FramedProfile(Profile):
 
 @dataclass(frozen=True)
 class Cubic(Profile):
-    """Ψ(θ) = c0 + c1 θ + c2 θ² + c3 θ³, rising over [low, high] (the paper's rectification model)."""
+    """Ψ(θ) = c0 + c1 θ + c2 θ² + c3 θ³, rising over [low, high] (the paper's rectification model).
+
+    >>> import rectbench as rb
+    >>> rb.Cubic(10.0, 300.0, 0.0, -10.0, low=-1.0, high=1.0)([0.0, 0.5])
+    array([ 10.  , 158.75])
+    """
 
     c0: float
     c1: float
@@ -151,7 +170,12 @@ RADIAL_LIMIT_RAD = {
 
 @dataclass(frozen=True)
 class Radial(Profile):
-    """centre + focal r(θ) with r one of the classical lens laws (Abraham and Förstner 2005)."""
+    """centre + focal r(θ) with r one of the classical lens laws (Abraham and Förstner 2005).
+
+    >>> import rectbench as rb
+    >>> rb.Radial("equidistant", 300.0, 10.0)([0.0, 0.5])
+    array([ 10., 160.])
+    """
 
     law: str
     focal_px: float

@@ -34,6 +34,17 @@ class Rectification:
 
     `rig` is the rig the rectifier believed in; depth is computed from it. `notes` are what the
     method has to say of itself (energy, focal length, a warning), shown beside its row.
+
+    >>> import rectbench as rb
+    >>> rig = rb.load_rig("t265")
+    >>> rect = rb.rectify(rig, method="abraham")
+    >>> rect.size
+    (804, 805)
+    >>> map_x, map_y = rect.maps("left")
+    >>> map_x.shape
+    (805, 804)
+    >>> rect.triangulate([400.0, 300.0], 5.0).round(2)  # metres
+    array([-0.  , -1.29,  3.44])
     """
 
     rig: Rig

@@ -19,7 +19,22 @@ from rectbench.warps.profiles import ANGLE_SLACK_RAD, Profile, Radial
 
 
 class Target(Projection):
-    """A rectified image as a projection, with what its lookup table can share along rows and columns."""
+    """A rectified image as a projection, with what its lookup table can share along rows and columns.
+
+    A subclass states the two formulas of a `Projection`, in the language of `rb.Formulas`, and their numbers:
+
+    >>> import rectbench as rb
+    >>> class Cylinder(rb.Target):
+    ...     constants = {"f": 300.0}
+    ...     def project_formula(self, c, x, y, z, xp):
+    ...         return c.f * xp.atan2(x, z), c.f * y / xp.hypot(x, z), xp.hypot(x, z) > 0.0
+    ...     def unproject_formula(self, c, u, v, xp):
+    ...         length = xp.hypot(1.0, v / c.f)
+    ...         return xp.sin(u / c.f) / length, v / c.f / length, xp.cos(u / c.f) / length, abs(u) < 900.0
+    >>> pixel, ok = Cylinder().project([1.0, 0.0, 1.0])
+    >>> pixel.round(2), bool(ok)
+    (array([235.62,   0.  ]), True)
+    """
 
     def axis_tables(
         self, columns: FloatArray, rows: FloatArray
@@ -84,7 +99,13 @@ WORST_CONDITION = 1e13
 
 @dataclass(frozen=True, eq=False)
 class Perspective(Target):
-    """(û, v̂, 1) ~ matrix @ ray, valid where the third coordinate is positive."""
+    """(û, v̂, 1) ~ matrix @ ray, valid where the third coordinate is positive.
+
+    >>> import rectbench as rb
+    >>> pixel, ok = rb.Perspective.from_focal(300.0, 320.0, 240.0).project([0.5, 0.0, 1.0])
+    >>> pixel, bool(ok)
+    (array([470., 240.]), True)
+    """
 
     matrix: FloatArray = field(repr=False)
     """[3, 3], pixels from rays; the third row points to where the image looks."""
@@ -127,7 +148,13 @@ class Perspective(Target):
 
 @dataclass(frozen=True)
 class Epipolar(Target):
-    """û = u(γ), v̂ = v(β): every map of this form keeps rows, provided both images share v."""
+    """û = u(γ), v̂ = v(β): every map of this form keeps rows, provided both images share v.
+
+    >>> import rectbench as rb
+    >>> target = rb.Epipolar(rb.Radial("equidistant", 300.0, 320.0), rb.Radial("equidistant", 300.0, 240.0))
+    >>> target.project([0.0, 0.0, 2.0])[0]
+    array([320., 240.])
+    """
 
     u: Profile
     v: Profile

@@ -18,7 +18,17 @@ from rectbench.warps.targets import Target
 
 @dataclass(frozen=True, eq=False)
 class Warp:
-    """Target ∘ R_rect_cam ∘ Φ⁻¹: the paper's H = Ψ ∘ R ∘ Φ (section III), exactly invertible."""
+    """Target ∘ R_rect_cam ∘ Φ⁻¹: the paper's H = Ψ ∘ R ∘ Φ (section III), exactly invertible.
+
+    >>> import rectbench as rb
+    >>> rig = rb.load_rig("t265")
+    >>> warp = rb.rectify(rig, method="abraham").left
+    >>> warp.forward([400.0, 400.0]).round(1), warp.jacobian([400.0, 400.0]).round(1)
+    (array([380.1, 399.1]), array([[ 1.,  0.],
+           [-0.,  1.]]))
+    >>> warp.inverse(warp.forward([400.0, 400.0])).round(6)
+    array([400., 400.])
+    """
 
     source: Camera
     R_rect_cam: FloatArray = field(repr=False)
