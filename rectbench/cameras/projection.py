@@ -63,7 +63,7 @@ class Projection(ABC):
     def project_jacobian(self, rays: ArrayLike) -> FloatArray:
         """d(pixel)/d(ray) [..., 2, 3] at rays [..., 3]; NaN outside the domain.
 
-        The pixel does not hang on the ray's length, so each row is orthogonal to the ray.
+        The pixel does not depend on the ray's length, so each row is orthogonal to the ray.
         """
         rays = as_points(rays, 3, "rays")
         partials, _ = evaluate_points(self._project_jacobian_formula, self.constants, rays)

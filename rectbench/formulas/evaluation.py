@@ -46,7 +46,7 @@ def evaluate(
 ) -> tuple[NDArray[Any], ...]:
     """`formula(c, *columns, xp)` on flat float64 columns, compiled where there are many.
 
-    The choice between NumPy and a kernel hangs on the number of points alone, so the same call
+    The choice between NumPy and a kernel depends on the number of points alone, so the same call
     gives the same digits again. Returns one flat array (float64, or bool for masks) an output.
     """
     if not _compiled(columns[0].size):

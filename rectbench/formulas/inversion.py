@@ -29,7 +29,7 @@ def repeat_until_settled(
 ) -> tuple[Any, ...]:
     """Repeat ``state = step(*state)`` on each element for as long as ``unsettled(*state)`` holds there.
 
-    An element stops by itself, so its digits do not hang on its neighbours. In a kernel this is a
+    An element stops by itself, so its digits do not depend on its neighbours. In a kernel this is a
     real loop, which compiles faster and ends sooner than unrolled steps.
     """
     if xp is not NUMPY:
@@ -69,9 +69,9 @@ def invert_monotone(
     def unsettled(x: Any, low: Any, high: Any, move: Any, count: Any) -> Any:
         return (xp.abs(move) > SETTLED * xp.abs(x)) & (count < MOST_STEPS)
 
-    nought = 0.0 * target
-    low, high = low + nought, high + nought
-    state = (start + nought, low, high, 4.0 * (high - low), nought)
+    zero = 0.0 * target
+    low, high = low + zero, high + zero
+    state = (start + zero, low, high, 4.0 * (high - low), zero)
     return repeat_until_settled(step, unsettled, state, xp)[0]
 
 
@@ -150,8 +150,8 @@ def invert_in_disk(
         return (moving | (count < 1.0)) & (count < MOST_STEPS)
 
     size = u * u + v * v
-    nought = 0.0 * size
-    steps_taken = xp.where(size <= reach * reach, nought, nought + MOST_STEPS)
-    state = (*within(u, v), nought, nought, nought + math.inf, steps_taken)
+    zero = 0.0 * size
+    steps_taken = xp.where(size <= reach * reach, zero, zero + MOST_STEPS)
+    state = (*within(u, v), zero, zero, zero + math.inf, steps_taken)
     a, b, _, _, miss, _ = repeat_until_settled(step, unsettled, state, xp)
     return a, b, miss <= PIXEL_SLACK * PIXEL_SLACK * xp.maximum(1.0, size)

@@ -85,7 +85,7 @@ class Jet:
 
 
 def constant(x: Any) -> Jet:
-    """`x` as a jet: itself if it is one, else a constant, whose derivatives are nought."""
+    """`x` as a jet: itself if it is one, else a constant, without partials."""
     return x if isinstance(x, Jet) else Jet(x)
 
 
@@ -200,7 +200,7 @@ def as_jets(tree: Any) -> Any:
 
 
 def without_partials(tree: Any) -> Any:
-    """The same constants as jets that hang on nothing."""
+    """The same constants as jets that depend on nothing."""
     if isinstance(tree, SimpleNamespace):
         return SimpleNamespace(**{name: without_partials(value) for name, value in vars(tree).items()})
     if isinstance(tree, tuple):

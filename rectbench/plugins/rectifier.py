@@ -56,7 +56,7 @@ class Problem:
     ((489, 2), (1999, 2))
     >>> left, right = problem.angle_warps()
     >>> left.forward(problem.pixels_left[:1]).round(2)  # γ and β, radians
-    array([[-0.88, -0.96]])
+    array([[-0.36, -1.38]])
     """
 
     rig: Rig

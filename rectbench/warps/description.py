@@ -8,7 +8,7 @@
       R_rect_cam: ...               # 3x3, from the camera's frame to the rectified one
       target: ...                   # from rays to rectified pixels: perspective, or epipolar
     right: ...
-    notes: ...                      # what the method had to say of itself
+    notes: ...                      # what the method tells of itself
 
 What the targets mean stands in the file, as comments (`HEADER`).
 """

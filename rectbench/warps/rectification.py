@@ -33,7 +33,7 @@ class Rectification:
     """What a rectifier returns: where each pixel of both images goes.
 
     `rig` is the rig the rectifier believed in; depth is computed from it. `notes` are what the
-    method has to say of itself (energy, focal length, a warning), shown beside its row.
+    method tells of itself (energy, focal length, a warning), shown beside its row.
 
     >>> import rectbench as rb
     >>> rig = rb.load_rig("t265")

@@ -39,7 +39,7 @@ class Target(Projection):
     def axis_tables(
         self, columns: FloatArray, rows: FloatArray
     ) -> tuple[tuple[FloatArray, ...], tuple[FloatArray, ...]]:
-        """Values that hang on the column (û) alone and on the row (v̂) alone, for `ray_formula`."""
+        """Values that depend on the column (û) alone and on the row (v̂) alone, for `ray_formula`."""
         return (columns,), (rows,)
 
     def framed(self, left: float, top: float, across: float, down: float) -> Target:
