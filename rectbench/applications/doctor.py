@@ -14,11 +14,11 @@ from typing import Any
 from rectbench import llvm
 from rectbench.calibrations import rig_names
 from rectbench.errors import RectbenchError
-from rectbench.experiments.run_folder import cpu_name, llvm_facts
 from rectbench.experiments.spec import REPORTS
 from rectbench.plugins.rectifier import METHODS
 from rectbench.plugins.scene import SCENES
 from rectbench.registry import Kind, registry
+from rectbench.runs.record import cpu_name, llvm_facts
 from rectbench.store.keys import versions
 from rectbench.store.store import Store
 

@@ -17,11 +17,11 @@ if TYPE_CHECKING:
     from rectbench.applications.conformance import Finding as CheckFinding
     from rectbench.applications.doctor import Finding
     from rectbench.applications.rectified_images import RectifiedImages
-    from rectbench.experiments.comparing import Comparison
-    from rectbench.experiments.gating import Verdict
     from rectbench.matching import PoseEstimate
     from rectbench.metrics import Uncertainty
     from rectbench.rigs import Rig, RigCovariance
+    from rectbench.runs.comparing import Comparison
+    from rectbench.runs.gating import Verdict
 
 WIDE = 160
 """Columns assumed where the output is no terminal, so that a pipe gets whole lines."""
@@ -51,10 +51,11 @@ def show_names(kind: str, verbose: bool) -> None:
     from rectbench.plugins.rectifier import METHODS
     from rectbench.plugins.scene import SCENES
     from rectbench.registry import Kind, registry
+    from rectbench.rigs.file_formats import FORMATS
 
     screen, table = console(), _table(kind)
     broken: dict[str, str] = {}
-    kinds: dict[str, Kind[Any]] = {known.name: known for known in (METHODS, SCENES, REPORTS)}
+    kinds: dict[str, Kind[Any]] = {known.name: known for known in (METHODS, SCENES, REPORTS, FORMATS)}
     if kind in kinds:
         found = registry(kinds[kind])
         broken = found.broken
@@ -72,7 +73,7 @@ def show_names(kind: str, verbose: bool) -> None:
 
 
 def _described(kind: str) -> list[tuple[str, str]]:
-    from rectbench.calibrations import calibration_formats, load_rig, rig_names
+    from rectbench.calibrations import load_rig, rig_names
     from rectbench.experiments.spec import ESTIMATED
     from rectbench.rigs import MOTIONS, POSES
 
@@ -84,21 +85,11 @@ def _described(kind: str) -> list[tuple[str, str]]:
             for name, noise in POSES.items()
         ]
         return [*noises, (ESTIMATED, "found in the images: features, five points, bundle adjustment")]
-    if kind == "formats":
-        return [(name, f"{title}{_how_written(name)}") for name, title in calibration_formats().items()]
     rigs = [(name, load_rig(name)) for name in rig_names()]
     return [
         (name, f"{r.left.model}, {r.left.width}x{r.left.height}, baseline {1000 * r.baseline_m:.0f} mm")
         for name, r in rigs
     ]
-
-
-def _how_written(format: str) -> str:
-    """What is said of a format that is not only read."""
-    from rectbench.calibrations import written_formats
-
-    in_folder = written_formats().get(format)
-    return {None: "", False: "; read and written", True: "; read and written, as a folder"}[in_folder]
 
 
 def _add_options(table: Table, method: Any) -> None:
@@ -130,8 +121,8 @@ def _plain(default: Any) -> str:
 
 def show_summary(folder: Path) -> None:
     """The main tables of a run, and where its page is."""
-    from rectbench.reporting.run_folder import read_run
     from rectbench.reporting.tables.tabulation import main_tables
+    from rectbench.runs.run import read_run
 
     screen, found = console(), read_run(folder)
     for summary in main_tables(found):

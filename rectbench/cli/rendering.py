@@ -24,7 +24,7 @@ def render(
 ) -> None:
     """Render a rig in a scene: left.png, right.png, truth.npz, truth EXRs and rig.yaml."""
     from rectbench import api
-    from rectbench.experiments.run_folder import check_writable
+    from rectbench.runs.record import check_writable
 
     check_writable(out)
     pair, truth = api.render(scene, rig, motion, seed, spp, quality, width)

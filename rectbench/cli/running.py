@@ -54,7 +54,7 @@ def run(
     from rectbench.cli import printing as terminal
     from rectbench.cli.configuring import overlaid, read_config, read_options
     from rectbench.experiments.execution.running import Interrupted, run_folder
-    from rectbench.experiments.run_folder import unreadable_images
+    from rectbench.runs.record import unreadable_images
 
     settings, options = read_config(config) if config else ({}, {})
     said = {
@@ -109,7 +109,7 @@ def gate(
     Exit code 0 where it is as good, 1 where it got worse, 3 where it is incomplete or measured nothing.
     """
     from rectbench.cli import printing as terminal
-    from rectbench.experiments import gating
+    from rectbench.runs import gating
 
     path = accepted or gating.accepted_path(folder)
     if accept:
@@ -127,7 +127,7 @@ def compare(
 ) -> None:
     """Compare two runs cell by cell: the median change B - A of every metric, with its 95 % interval."""
     from rectbench.cli import printing as terminal
-    from rectbench.experiments import comparing
+    from rectbench.runs import comparing
 
     comparison = comparing.compare(a, b)
     if comparison.table.empty:

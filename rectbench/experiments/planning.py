@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, TypeVar
 
 from rectbench.calibrations import load_rig, rig_names
 from rectbench.errors import InvalidInput, UnknownName
 from rectbench.experiments.spec import ESTIMATED, REPORTS, Group, PairName, Report
-from rectbench.experiments.tasks import AS_CALIBRATED, AnyPair, Cell, CellTask, PairTask, PhotoTask
+from rectbench.experiments.tasks import Cell, CellTask
 from rectbench.pairs.finding.photographs import Photographs, find_photographs
+from rectbench.pairs.spec import AS_CALIBRATED, PairSpec, PhotographedSpec, RenderedSpec
 from rectbench.plugins.fitting import checked_options
 from rectbench.plugins.rectifier import METHODS, Rectifier
 from rectbench.plugins.scene import SCENES
@@ -56,7 +57,7 @@ class Plan:
         )
 
     @property
-    def pairs(self) -> tuple[AnyPair, ...]:
+    def pairs(self) -> tuple[PairSpec, ...]:
         """The pairs the cells stand on, each once."""
         return tuple(dict.fromkeys(task.pair for task in self.tasks))
 
@@ -136,7 +137,7 @@ def _tasks_of(
     seeds = _chosen_seeds(part, report, chosen)
     images_wanted = report.needs_images(part) or "images" in needs
     truth_wanted = report.needs_truth(part) or "matches" in needs
-    made: Iterator[AnyPair]
+    made: Iterator[PairSpec]
     if photographs is None:
         made = _rendered(pairs, seeds, report, part, truth=truth_wanted, images=images_wanted)
     else:
@@ -144,10 +145,18 @@ def _tasks_of(
     for pair in made:
         for pose, (method, method_source) in itertools.product(report.poses, methods):
             for options in option_sets[method.name]:
-                words = canonical_json(options)
-                identity = (pair.scene, pair.rig, pair.motion, pose, method.name, words, pair.seed)
+                cell = Cell(
+                    report=report.name,
+                    scene=pair.scene,
+                    rig=pair.rig,
+                    motion=pair.motion,
+                    pose=pose,
+                    method=method.name,
+                    options=canonical_json(options),
+                    seed=pair.seed,
+                )
                 yield CellTask(
-                    cell=Cell(report.name, *identity),
+                    cell=cell,
                     pair=pair,
                     method_source=method_source,
                     options=options,
@@ -161,7 +170,7 @@ def _tasks_of(
 
 def _rendered(
     pairs: list[PairName], seeds: Sequence[int], report: Report, part: Group, *, truth: bool, images: bool
-) -> Iterator[PairTask]:
+) -> Iterator[RenderedSpec]:
     """The pairs of a part that are rendered: each rig in its scene."""
     scenes = {name: _plugins(SCENES, [name])[0] for name in dict.fromkeys(scene for scene, _, _ in pairs)}
     rigs = _rigs(dict.fromkeys(rig for _, rig, _ in pairs))
@@ -169,7 +178,7 @@ def _rendered(
     for (scene, rig, motion), seed in itertools.product(pairs, seeds):
         plugin, scene_source = scenes[scene]
         rig_name, rig_source = rigs[rig]
-        yield PairTask(
+        yield RenderedSpec(
             scene=plugin.name,
             rig=rig_name,
             motion=motion,
@@ -186,13 +195,13 @@ def _rendered(
 
 def _photographed(
     pairs: list[PairName], seeds: Sequence[int], photographs: Photographs
-) -> Iterator[PhotoTask]:
+) -> Iterator[PhotographedSpec]:
     """The pairs that were found in a folder."""
     found = {(pair.name, pair.calibration.name): pair for pair in photographs.pairs}
     for (scene, rig, motion), seed in itertools.product(pairs, seeds):
         pair = found[scene, rig]
         calibration = pair.calibration
-        yield PhotoTask(
+        yield PhotographedSpec(
             scene=scene,
             rig=rig,
             motion=motion,
@@ -209,17 +218,19 @@ def _photographed(
 
 def _sharing_pairs(tasks: Collection[CellTask]) -> Iterator[CellTask]:
     """The tasks, those of different parts on one pair sharing one task for it, so that it is made once."""
-    wanted: dict[PairTask, PairTask] = {}
+    wanted: dict[RenderedSpec, RenderedSpec] = {}
     for pair in (task.pair for task in tasks):
-        if isinstance(pair, PairTask):
-            bare = replace(pair, truth=False, images=False)
+        if isinstance(pair, RenderedSpec):
+            bare = pair.model_copy(update={"truth": False, "images": False})
             known = wanted.get(bare, bare)
-            wanted[bare] = replace(bare, truth=pair.truth or known.truth, images=pair.images or known.images)
+            wanted[bare] = bare.model_copy(
+                update={"truth": pair.truth or known.truth, "images": pair.images or known.images}
+            )
     for task in tasks:
         pair = task.pair
-        if isinstance(pair, PairTask):
-            pair = wanted[replace(pair, truth=False, images=False)]
-        yield replace(task, pair=pair)
+        if isinstance(pair, RenderedSpec):
+            pair = wanted[pair.model_copy(update={"truth": False, "images": False})]
+        yield task.model_copy(update={"pair": pair})
 
 
 def _chosen_methods(part: Group, report: Report, chosen: Selection) -> list[str]:

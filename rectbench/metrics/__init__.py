@@ -4,13 +4,13 @@ from rectbench.metrics.coverage import coverage, dense_pixels
 from rectbench.metrics.distortion import Distortion, distortion, distortion_of, log_distortion
 from rectbench.metrics.energy import energy_convex_share
 from rectbench.metrics.frame import frame_costs
-from rectbench.metrics.jacobians import Jacobians
 from rectbench.metrics.order import order
 from rectbench.metrics.reconstruction import reconstruction_scores
 from rectbench.metrics.rows import RowError, row_error
 from rectbench.metrics.sampling import every_pixel, per_pixel
 from rectbench.metrics.scoring import distortion_columns, measure
 from rectbench.metrics.uncertainty import Uncertainty, uncertainty
+from rectbench.warps.jacobians import Jacobians
 
 __all__ = [
     "Distortion",

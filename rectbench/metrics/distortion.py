@@ -15,10 +15,10 @@ from numpy.typing import ArrayLike
 from scipy.optimize import least_squares
 
 from rectbench.errors import InvalidInput
-from rectbench.metrics.jacobians import Jacobians, entries, finite, losses, singular_values
 from rectbench.rigs import Rig
 from rectbench.types import FloatArray
 from rectbench.warps import Rectification
+from rectbench.warps.jacobians import Jacobians, entries, finite, losses, singular_values
 
 Protocol = Literal["native", "rescaled", "stretched"]
 WEIGHTS = np.sqrt([1.0, 0.5, 0.5])

@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 
 from rectbench.errors import InvalidInput
 from rectbench.metrics.distortion import WEIGHTS
-from rectbench.metrics.jacobians import entries
 from rectbench.types import FloatArray
 from rectbench.warps import Cubic, Epipolar, Profile, Rectification, Warp, evaluation_pixels
+from rectbench.warps.jacobians import entries
 from rectbench.warps.targets import ANGLES
 
 COEFFICIENTS = ("u1", "u2", "u3", "v1", "v2", "v3")

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from rectbench.metrics.coverage import coverage
 from rectbench.metrics.distortion import log_distortion
-from rectbench.metrics.jacobians import Jacobians
 from rectbench.metrics.sampling import every_pixel
 from rectbench.rigs import Rig
 from rectbench.warps import Rectification, centre_resolution_px
+from rectbench.warps.jacobians import Jacobians
 from rectbench.warps.view.framing import focal_px
 
 

@@ -10,9 +10,9 @@ from numpy.typing import ArrayLike
 
 from rectbench.cameras.projection import as_points
 from rectbench.errors import InvalidInput
-from rectbench.metrics.jacobians import finite
 from rectbench.types import FloatArray
 from rectbench.warps import Rectification
+from rectbench.warps.jacobians import finite
 from rectbench.warps.rectification import in_frame
 
 

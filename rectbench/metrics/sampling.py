@@ -10,9 +10,9 @@ import numpy as np
 
 from rectbench.formulas.evaluation import evaluate_points
 from rectbench.metrics.distortion import PROTOCOLS, WEIGHTS
-from rectbench.metrics.jacobians import Jacobians, losses, singular_values
 from rectbench.types import FloatArray
 from rectbench.warps import Rectification, Warp, evaluation_pixels
+from rectbench.warps.jacobians import Jacobians, losses, singular_values
 
 UNIT_TOLERANCE = 1e-9
 """A singular value this near to 1 is an unchanged length, not a lost or invented pixel."""

@@ -25,12 +25,12 @@ from numpy.typing import ArrayLike
 from rectbench.cameras.projection import as_points
 from rectbench.errors import InvalidInput
 from rectbench.metrics.coverage import dense_pixels
-from rectbench.metrics.jacobians import finite
 from rectbench.metrics.propagation import GROUPS, Propagation
 from rectbench.rigs import Rig
 from rectbench.rigs.covariance import RigCovariance
 from rectbench.types import FloatArray
 from rectbench.warps import Rectification
+from rectbench.warps.jacobians import finite
 
 MEAN_OF_ABSOLUTE = math.sqrt(2 / math.pi)
 """E|x| of a normal x with σ = 1."""

@@ -6,20 +6,20 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from rectbench.metrics.catalogue import PROTOCOLS, ROW_ERRORS, STAGES, column
 from rectbench.reporting.charts.bars import BarChart, bar_chart, draw_bars, pair_chart, stage_chart
 from rectbench.reporting.charts.energy_curves import draw_energy
 from rectbench.reporting.charts.scatter import draw_scatter, scatter
 from rectbench.reporting.charts.squares import draw_squares
 from rectbench.reporting.charts.starts import draw_starts, start_study, study_method
-from rectbench.reporting.columns import PROTOCOLS, ROW_ERRORS, STAGES, column
 from rectbench.reporting.figures import Plan
 from rectbench.reporting.page.run_facts import stated_seconds, wanted_kinds
 from rectbench.reporting.pictures.clouds import DPI, draw_clouds
 from rectbench.reporting.pictures.distortion_maps import draw_distortion_maps
 from rectbench.reporting.pictures.rectified import PIXELS_PER_INCH, draw_rectified
-from rectbench.reporting.run_folder import Result, Run
 from rectbench.reporting.sources import Sources
 from rectbench.reporting.tables.tabulation import methods_part, named, slug
+from rectbench.runs.run import Result, Run
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

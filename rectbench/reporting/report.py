@@ -10,10 +10,10 @@ from rectbench.progress import Progress
 from rectbench.reporting.figure_plans import planned_figures
 from rectbench.reporting.figures import EXTENSIONS, draw_changed
 from rectbench.reporting.page.page import render_page
-from rectbench.reporting.run_folder import read_run
 from rectbench.reporting.sources import Sources, sources_of
 from rectbench.reporting.tables.part_tables import all_tables
 from rectbench.reporting.tables.table import SPELLINGS, Table
+from rectbench.runs.run import read_run
 from rectbench.writing import write_atomically
 
 MANIFEST = "figures/manifest.json"

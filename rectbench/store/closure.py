@@ -27,8 +27,8 @@ def source_closure(*modules: str, root: Path = PACKAGE) -> tuple[Path, ...]:
     package's `__init__` counts with each of its modules, since Python runs it first.
     """
     files = _files_by_module(root)
-    if missing := sorted(set(modules) - set(files)):
-        raise ValueError(f"{root} holds no module {missing[0]}; expected one of {len(files)} full names")
+    if unknown := [name for name in modules if name not in files]:
+        raise ValueError(f"there is no module {unknown[0]} in {root}")
     found: dict[str, Path] = {}
     queue = list(modules)
     while queue:

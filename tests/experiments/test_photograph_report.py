@@ -15,10 +15,10 @@ from scipy.spatial.transform import Rotation
 
 import rectbench as rb
 from rectbench.experiments.execution.running import run
-from rectbench.experiments.gating import accept, gate
 from rectbench.experiments.planning import make_plan
 from rectbench.experiments.tasks import CellTask
 from rectbench.reporting import write_report
+from rectbench.runs.gating import accept, gate
 from rectbench.store.store import STORE_VARIABLE
 from tests.conftest import Shell
 from tests.matching.flat_board import chessboard, seen_board
@@ -134,7 +134,7 @@ def test_a_report_of_the_run_is_made_again(run_dir: Path) -> None:
 
 def test_its_tasks_survive_json(folder: Path) -> None:
     task = make_plan(REPORT, data=folder).tasks[0]
-    assert CellTask.from_json(json.loads(json.dumps(task.to_json()))) == task
+    assert CellTask.model_validate(json.loads(json.dumps(task.model_dump(mode="json")))) == task
 
 
 def test_it_resumes_and_an_edited_image_runs_anew(

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 import rectbench as rb
 from rectbench.metrics import Jacobians, distortion_of, every_pixel, log_distortion
 from rectbench.metrics.distortion import best_scale, best_stretch
-from rectbench.metrics.jacobians import entries, singular_values
+from rectbench.warps.jacobians import entries, singular_values
 from tests.rigs_for_tests import aligned_rig, rig
 
 

@@ -7,8 +7,8 @@ import pytest
 
 from rectbench.reporting.charts.bars import bar_chart, draw_bars
 from rectbench.reporting.charts.scatter import scatter
-from rectbench.reporting.run_folder import read_run
 from rectbench.reporting.style import looks
+from rectbench.runs.run import read_run
 from tests.reporting.runs import failed_row, make_row, quick_rows
 
 WriteRun = Callable[..., Path]

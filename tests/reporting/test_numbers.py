@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from rectbench.reporting.columns import METRICS, Column, column
+from rectbench.metrics.catalogue import METRICS, Column, column
 from rectbench.reporting.tables.numbers import decade, shown, three_digits
 
 

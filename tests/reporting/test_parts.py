@@ -16,10 +16,10 @@ import pytest
 from rectbench.reporting import write_report
 from rectbench.reporting.charts.starts import start_study
 from rectbench.reporting.figures import EXTENSIONS
-from rectbench.reporting.run_folder import read_run
 from rectbench.reporting.tables.labels import pair_labels
 from rectbench.reporting.tables.part_tables import all_tables, pose_table, starts_table, timing_table
 from rectbench.reporting.tables.table import Table, to_csv, to_latex
+from rectbench.runs.run import read_run
 from tests.reporting.runs import failed_row, fake_sources, make_row, save_run
 from tests.reporting.test_report import Page
 

@@ -10,16 +10,16 @@ import pytest
 
 import rectbench as rb
 from rectbench.errors import Unsupported
+from rectbench.metrics.catalogue import PROTOCOLS, STAGES
 from rectbench.reporting import Sources
 from rectbench.reporting.charts.bars import draw_bars, pair_chart, stage_chart
 from rectbench.reporting.charts.energy_curves import draw_energy, shape_of
 from rectbench.reporting.charts.squares import mapped_cells, source_squares
-from rectbench.reporting.columns import PROTOCOLS, STAGES
 from rectbench.reporting.pictures.clouds import SIZE, draw_clouds
 from rectbench.reporting.pictures.distortion_maps import BEYOND, draw_distortion_maps
 from rectbench.reporting.pictures.rectified import draw_rectified
 from rectbench.reporting.pictures.views import BACKGROUND, View, looking_at, patches_of, splat, two_views
-from rectbench.reporting.run_folder import read_run
+from rectbench.runs.run import read_run
 from tests.reporting.runs import fake_pair, fake_rectification, fake_rig, make_row, quick_rows
 
 WriteRun = Callable[..., Path]
@@ -203,7 +203,7 @@ def test_clouds_without_a_truth_have_a_row_a_method_and_one_view_of_all(
     write_run: WriteRun, sources: Sources
 ) -> None:
     run = read_run(write_run([make_row("a", "t265", "calibrated", m) for m in ("abraham", "conventional")]))
-    known = replace(sources.pair(run.results[0]), truth=None)
+    known = replace(sources.pair(run.results[0]), knows_truth=False)
     figure = draw_clouds(replace(sources, pair=lambda result: known), run.results, run.methods)
     pictures = [np.asarray(ax.images[0].get_array()) for ax in figure.axes if ax.images]
     assert len(pictures) == 4
@@ -217,7 +217,7 @@ def test_a_photographed_pair_without_matches_is_shown_without_marks(
 ) -> None:
     run = read_run(write_run([make_row("a", "t265", "calibrated", "abraham")]))
     nothing = rb.Matches(np.empty((0, 2)), np.empty((0, 2)))
-    known = replace(sources.pair(run.results[0]), matches=nothing, truth=None)
+    known = replace(sources.pair(run.results[0]), matches=nothing, knows_truth=False)
     figure = draw_rectified(replace(sources, pair=lambda result: known), run.results, run.methods)
     for ax in figure.axes:
         assert ax.images

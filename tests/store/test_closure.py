@@ -15,12 +15,20 @@ from rectbench.store.keys import code_digest
 CELLS = "rectbench.experiments.execution.cells"
 """What computes the rows of a run."""
 
-WITHOUT_ROWS = ("api", "applications", "cli", "experiments", "pairs.finding", "progress", "reporting", "runs")
-"""Folders and modules that may lie outside: verbs, what is done with rows, which rows there are to be."""
+WITHOUT_ROWS = (
+    *("api", "applications", "cli", "progress"),  # verbs
+    *("reporting", "runs"),  # what is done with rows
+    *(
+        "calibrations",
+        "experiments",
+        "pairs.finding",
+    ),  # which rows there are to be; a rig's numbers are in the key
+)
 COMPUTING_BUT_NO_ROWS = {
     "rectbench": "imports each public name when it is first used",
     "rectbench.__main__": "the command line",
     "rectbench.matching.pose.uncalibrated": "a rig for images without a calibration, which no cell has",
+    "rectbench.metrics.catalogue": "what columns are called and how they are judged",
     "rectbench.plugins.defaults": "a cell names its method",
     "rectbench.plugins.homography": "in the key of each method that uses it, as its own file is",
 }

@@ -10,10 +10,10 @@ from dataclasses import dataclass, field
 from itertools import product
 from typing import TYPE_CHECKING
 
-from rectbench.reporting.columns import column
-from rectbench.reporting.run_folder import Result, Run
+from rectbench.metrics.catalogue import column
 from rectbench.reporting.style import COLUMN_INCHES, FAINT, INK, PAGE_INCHES, looks, plain_log_ticks
 from rectbench.reporting.tables.labels import pair_labels
+from rectbench.runs.run import Result, Run
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -19,10 +19,10 @@ from rectbench.metrics.energy import (
     energy_slice,
     has_cubics,
 )
-from rectbench.reporting.run_folder import Result
 from rectbench.reporting.sources import Sources, attempted
 from rectbench.reporting.style import INK, PAGE_INCHES
 from rectbench.reporting.tables.numbers import three_digits
+from rectbench.runs.run import Result
 from rectbench.warps import Rectification
 
 if TYPE_CHECKING:

@@ -7,9 +7,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rectbench.reporting.columns import column
-from rectbench.reporting.run_folder import Run
+from rectbench.metrics.catalogue import column
 from rectbench.reporting.style import COLUMN_INCHES, FAINT, INK, PAGE_INCHES, PAPER, looks, plain_log_ticks
+from rectbench.runs.run import Run
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -10,9 +10,9 @@ import numpy as np
 
 from rectbench.cameras import Camera
 from rectbench.reporting.pictures.panels import fit_into_box, panel_grid, write_head, write_message
-from rectbench.reporting.run_folder import Result
 from rectbench.reporting.sources import Sources, attempted
 from rectbench.reporting.style import FAINT, INK, PAGE_INCHES, looks
+from rectbench.runs.run import Result
 from rectbench.types import FloatArray
 from rectbench.warps import Warp
 

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rectbench.reporting.run_folder import Result, Run
 from rectbench.reporting.style import COLUMN_INCHES, INK, PAGE_INCHES, looks, plain_log_ticks
 from rectbench.reporting.tables.labels import pair_labels
 from rectbench.reporting.tables.numbers import decade
+from rectbench.runs.run import Result, Run
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

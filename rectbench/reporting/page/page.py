@@ -6,7 +6,8 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from rectbench.reporting.columns import Column, column
+from rectbench.metrics.catalogue import column
+from rectbench.plugins.metric import Column
 from rectbench.reporting.figures import EXTENSIONS, Drawn
 from rectbench.reporting.page.run_facts import (
     Fact,
@@ -17,10 +18,10 @@ from rectbench.reporting.page.run_facts import (
     run_facts,
     title,
 )
-from rectbench.reporting.run_folder import Run
 from rectbench.reporting.style import looks
 from rectbench.reporting.tables.table import SPELLINGS, Entry, Table
 from rectbench.reporting.tables.tabulation import methods_part, slug
+from rectbench.runs.run import Run
 
 TOPICS = (
     ("ranking", "Ranking", ("main",), ()),

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from rectbench.reporting.run_folder import Run
+from rectbench.runs.run import Run
 
 _LABELS = {
     "command": "Command",

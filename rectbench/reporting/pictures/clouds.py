@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rectbench.images.stereo_pair import StereoPair
+from rectbench.metrics.catalogue import column
 from rectbench.rendering.truth import Truth
-from rectbench.reporting.columns import column
 from rectbench.reporting.pictures.panels import fit_into_box, panel_grid, write_head, write_message
 from rectbench.reporting.pictures.views import Floats, Patches, Picture, View, patches_of, splat, two_views
-from rectbench.reporting.run_folder import Result
 from rectbench.reporting.sources import Sources, attempted
 from rectbench.reporting.style import looks
 from rectbench.reporting.tables.numbers import shown
+from rectbench.runs.run import Result
 from rectbench.types import FloatArray
 
 if TYPE_CHECKING:
@@ -38,15 +38,15 @@ def draw_clouds(sources: Sources, results: Sequence[Result], methods: Sequence[s
     ]
     # All are seen alike: from viewpoints made from the truth, else from what they show together.
     points: FloatArray | Floats
-    if known.truth is not None:
+    if known.knows_truth:
         points = known.truth.points_left[known.truth.visible_left]
     else:
         points = _together([patches for _, patches in clouds if not isinstance(patches, str)])
     views = two_views(points, SIZE)
-    heads = 0 if known.truth is None else 2
+    heads = 2 if known.knows_truth else 0
     figure, axes = panel_grid(2 * len(results) + heads, 2, SIZE[1] / SIZE[0])
     colours = looks(methods)
-    if known.truth is not None:
+    if known.knows_truth:
         _draw_row(axes[:2], _pictures(_true_patches(known.images, known.truth), views))
         _write_heads(axes[:2], "truth", "the left image at its depth")
     for i, (result, patches) in enumerate(clouds):

@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 
 from rectbench.cameras import Camera
 from rectbench.reporting.pictures.panels import fit_into_box, panel_grid, write_head, write_message
-from rectbench.reporting.run_folder import Result
 from rectbench.reporting.sources import Side, Sources, attempted
 from rectbench.reporting.style import LOST, PAGE_INCHES, looks, plain_log_ticks
 from rectbench.reporting.tables.numbers import decade, three_digits
 from rectbench.rigs import Rig
+from rectbench.runs.run import Result
 from rectbench.types import FloatArray
 from rectbench.warps import Rectification
 

@@ -10,12 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rectbench.images.stereo_pair import StereoPair
-from rectbench.reporting.columns import column
+from rectbench.metrics.catalogue import column
 from rectbench.reporting.pictures.panels import fit_into_box, panel_grid, write_head, write_message
-from rectbench.reporting.run_folder import Result
 from rectbench.reporting.sources import Sources, attempted
 from rectbench.reporting.style import PAGE_INCHES, looks
 from rectbench.reporting.tables.numbers import shown
+from rectbench.runs.run import Result
 from rectbench.types import FloatArray, Matches
 from rectbench.warps import Rectification
 
@@ -69,7 +69,7 @@ def draw_rectified(sources: Sources, results: Sequence[Result], methods: Sequenc
     Raises whatever the sources raise for the pair itself; a method that fails shows why in its place.
     """
     known = sources.pair(results[0])
-    pair, marks = known.images, _marks(known.matches, known.images)
+    pair, marks = known.images, _marks(known.shown_matches(), known.images)
     panels: list[tuple[str, Panel | str]] = [("", Panel("", pair.left, pair.right, marks))]
     panels += [
         (r.method, attempted(r, lambda r=r: _panel(sources, r, pair, marks)))  # type: ignore[misc]

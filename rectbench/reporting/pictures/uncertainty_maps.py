@@ -15,13 +15,13 @@ from numpy.typing import NDArray
 
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
-from rectbench.metrics.jacobians import finite
 from rectbench.metrics.uncertainty import Uncertainty
 from rectbench.reporting.pictures.panels import fit_into_box, panel_grid, write_head, write_message
 from rectbench.reporting.style import LOST, PAGE_INCHES, STYLE, encode
 from rectbench.reporting.tables.numbers import three_digits
 from rectbench.rigs.covariance import RigCovariance
 from rectbench.types import FloatArray
+from rectbench.warps.jacobians import finite
 from rectbench.writing import write_atomically
 
 if TYPE_CHECKING:

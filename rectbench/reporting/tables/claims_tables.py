@@ -6,11 +6,11 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from rectbench.reporting.columns import Column
+from rectbench.plugins.metric import Column
 from rectbench.reporting.page.run_facts import stated_claims
-from rectbench.reporting.run_folder import Run
 from rectbench.reporting.tables.table import Entry, Heading, Section, Table, number, whole, words
 from rectbench.reporting.tables.tabulation import counted
+from rectbench.runs.run import Run
 
 if TYPE_CHECKING:
     from rectbench.experiments.claims import Judged, Measured

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rectbench.reporting.run_folder import Run
+from rectbench.runs.run import Run
 
 Place = tuple[str, str, str]
 

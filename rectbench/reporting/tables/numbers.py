@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from rectbench.reporting.columns import Column
+from rectbench.plugins.metric import Column
 
 MISSING = "–"
 """What stands where there is no number."""

@@ -8,10 +8,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from rectbench.metrics.catalogue import DEPTH_KEYS, POSE_KEYS, ROW_KEYS, STAGES, column
+from rectbench.plugins.metric import Column
 from rectbench.reporting.charts.starts import SAME_MINIMUM, Starts, start_study, study_method
-from rectbench.reporting.columns import DEPTH_KEYS, POSE_KEYS, ROW_KEYS, STAGES, Column, column
 from rectbench.reporting.page.run_facts import stated_seconds, wanted_kinds
-from rectbench.reporting.run_folder import Result, Run
 from rectbench.reporting.tables.claims_tables import claims_tables
 from rectbench.reporting.tables.labels import one_line, pair_labels
 from rectbench.reporting.tables.numbers import MISSING, three_digits
@@ -29,6 +29,7 @@ from rectbench.reporting.tables.tabulation import (
     pair_tables,
     titled,
 )
+from rectbench.runs.run import Result, Run
 from rectbench.types import FloatArray
 
 ENERGY_KEYS = ("distortion_native", "energy_convex_share")

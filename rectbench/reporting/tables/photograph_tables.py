@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from rectbench.reporting.columns import column
-from rectbench.reporting.run_folder import Run
+from rectbench.metrics.catalogue import column
 from rectbench.reporting.tables.labels import one_line, pair_labels
 from rectbench.reporting.tables.numbers import MISSING
 from rectbench.reporting.tables.table import Heading, Section, Table, number, words
+from rectbench.runs.run import Run
 
 COUNTED = ("pose_inliers", "row_error_features_matches", "row_error_board_points")
 

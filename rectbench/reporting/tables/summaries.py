@@ -8,8 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rectbench.reporting.columns import RANKING_KEY, Column, column
-from rectbench.reporting.run_folder import Result
+from rectbench.metrics.catalogue import RANKING_KEY, column
+from rectbench.plugins.metric import Column
+from rectbench.runs.run import Result
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ import textwrap
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from rectbench.reporting.columns import Column
+from rectbench.plugins.metric import Column
 from rectbench.reporting.tables.numbers import MISSING, shown
 
 

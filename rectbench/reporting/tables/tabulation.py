@@ -12,20 +12,20 @@ from dataclasses import replace
 from itertools import product
 from typing import Any
 
-from rectbench.reporting.columns import (
+from rectbench.metrics.catalogue import (
     ALL_PIXELS_KEYS,
     DISTORTION_KEYS,
     MAIN_KEYS,
     PHOTOGRAPH_KEYS,
     RANKING_KEY,
-    Column,
     column,
 )
+from rectbench.plugins.metric import Column
 from rectbench.reporting.page.run_facts import part_title, wanted_kinds
-from rectbench.reporting.run_folder import Result, Run
 from rectbench.reporting.tables.numbers import MISSING, three_digits
 from rectbench.reporting.tables.summaries import Summary, ranked, summarise
 from rectbench.reporting.tables.table import Entry, Heading, Section, Table, number, with_best
+from rectbench.runs.run import Result, Run
 
 OK_HEADING = Heading("ok", "ok", meaning="Cells measured of cells planned.")
 NOT_OK_HEADING = Heading("not ok", "not_ok", numeric=False, meaning="How the other cells ended.")

@@ -1,0 +1,220 @@
+"""What a metric is: columns of a row with all that is known of them, and how they are computed."""
+
+from __future__ import annotations
+
+import inspect
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any, ClassVar, Literal, Protocol
+
+from rectbench.errors import InvalidInput
+from rectbench.images.stereo_pair import StereoPair
+from rectbench.matching import BoardMatches, PoseEstimate
+from rectbench.registry.kind import Described, Kind
+from rectbench.rendering.truth import Truth
+from rectbench.rigs import Rig
+from rectbench.types import Matches
+from rectbench.warps import Rectification
+from rectbench.warps.jacobians import Jacobians
+
+Better = Literal["lower", "higher"]
+Average = Literal["mean", "rms", "max", "min"]
+Need = Literal["truth", "images", "estimate"]
+Shown = Literal["pairs", "topic", "page", "summary"]
+
+TOPICS = (
+    "Distortion",
+    "Row error",
+    "Coverage",
+    "Sampling",
+    "Order",
+    "Poses",
+    "Reconstruction",
+    "Energy",
+    "Time",
+)
+"""What metrics are about, in the order in which tables and the page show them; others follow these."""
+
+
+@dataclass(frozen=True)
+class Tolerance:
+    """How far a column may be worse than accepted: by `relative` of the accepted value, plus `absolute`."""
+
+    relative: float
+    absolute: float
+
+
+@dataclass(frozen=True)
+class Column:
+    """One number of a row, and all that is known of it.
+
+    Parameters
+    ----------
+    key : its name in `results.parquet`, the unit at its end.
+    heading, unit : what stands above it; the shown number is the stored one times `scale`.
+    better : which way is good, None where neither is.
+    meaning : one sentence for the glossary.
+    average : how cells are averaged. RMS values are pooled as such, a maximum stays one.
+    floor : shown numbers below this are shown as "<floor".
+    is_count : whether the number counts things, and is shown whole.
+    tolerance : how far it may be worse than accepted before a gate closes; None where no gate looks at it.
+    shown : where it first appears: in the table of each pair alone, also in its topic's table, also in the
+        main table on the page, or in the main table on a terminal too.
+    without_truth : whether the main tables show it only where nobody knows the truth, as of photographs.
+    promised : whether the rows have the column even where it was not asked for, empty then.
+    """
+
+    key: str
+    heading: str
+    unit: str = ""
+    better: Better | None = None
+    meaning: str = ""
+    scale: float = 1.0
+    average: Average = "mean"
+    floor: float = 0.0
+    is_count: bool = False
+    tolerance: Tolerance | None = None
+    shown: Shown = "topic"
+    without_truth: bool = False
+    promised: bool = False
+
+    @property
+    def is_percentage(self) -> bool:
+        """Whether the number is a share, shown with one decimal."""
+        return self.unit == "%"
+
+    @property
+    def full_heading(self) -> str:
+        """Heading with the unit in brackets."""
+        return f"{self.heading} [{self.unit}]" if self.unit else self.heading
+
+    def change(self, accepted: float, now: float, slack: float = 1.0) -> Literal["same", "better", "worse"]:
+        """How `now` stands to the accepted value, within `slack` times the tolerance.
+
+        A number that is no longer there is worse.
+        """
+        if math.isnan(accepted) or math.isnan(now):
+            if math.isnan(accepted) and math.isnan(now):
+                return "same"
+            return "worse" if math.isnan(now) else "better"
+        if accepted == now:
+            return "same"  # infinities too
+        allowed = self.tolerance or Tolerance(0.0, 0.0)
+        bound = slack * (allowed.relative * abs(accepted) + allowed.absolute)
+        if math.isfinite(accepted) and abs(now - accepted) <= bound:
+            return "same"
+        return "better" if (now < accepted) == (self.better == "lower") else "worse"
+
+
+class Known(Protocol):
+    """What is known of the two images under a cell; each is found when it is first asked for."""
+
+    @property
+    def rig(self) -> Rig:
+        """The true rig; of photographs the calibrated one."""
+
+    @property
+    def images(self) -> StereoPair:
+        """The images, rendered or photographed."""
+
+    @property
+    def knows_truth(self) -> bool:
+        """Whether anybody knows the truth about the pair."""
+
+    @property
+    def truth(self) -> Truth:
+        """The truth about a rendered pair. Raises InvalidInput for photographs, whose truth nobody knows."""
+
+    @property
+    def true_matches(self) -> Matches:
+        """10,000 exact correspondences, unoccluded in both images. Raises InvalidInput for photographs."""
+
+    @property
+    def board(self) -> BoardMatches | None:
+        """The corners of a calibration board that both images show; None where they show none."""
+
+    @property
+    def estimate(self) -> PoseEstimate:
+        """The relative pose as the images tell it. Raises PoseNotFound where they tell none."""
+
+    def features(self, *, by_estimate: bool) -> Matches:
+        """SIFT matches of the images, freed of wrong ones by the true pose, or by the estimated one.
+
+        Raises PoseNotFound where photographs tell no pose.
+        """
+
+    def pose_seconds(self) -> float:
+        """Seconds from the two images, in memory, to their pose, warm."""
+
+
+@dataclass(frozen=True, eq=False)
+class Case:
+    """A rectification to be scored, and what is known of the pair it belongs to."""
+
+    rect: Rectification
+    """What the method made of the rig that it believed in."""
+    pair: Known
+    pose_is_estimated: bool = False
+    """Whether the method was told the pose that the images tell."""
+    fit: Callable[[], Rectification] | None = None
+    """Fits the method once more; for times."""
+    first_fit_s: float = math.nan
+    """Seconds of the fit that gave `rect`."""
+    remarks: dict[str, str] = field(default_factory=dict)
+    """What is to be said beside the numbers, by a name; metrics add theirs."""
+
+    @property
+    def rig(self) -> Rig:
+        """The true rig; of photographs the calibrated one."""
+        return self.pair.rig
+
+    @cached_property
+    def jacobians(self) -> Jacobians:
+        """At the evaluation pixels of both images."""
+        return Jacobians.at(self.rect)
+
+
+class Metric(ABC):
+    """A metric: one file, one class. Tables, gate, page and glossary take all they show from its columns.
+
+    The class's docstring says in its first line what is measured.
+    """
+
+    name: ClassVar[str]
+    """What reports ask for."""
+    topic: ClassVar[str]
+    """The heading under which it is shown, see `TOPICS`."""
+    needs: ClassVar[frozenset[Need]] = frozenset()
+    """What of the pair it looks at beside the geometry; nothing is rendered that no metric needs."""
+    columns: ClassVar[tuple[Column, ...]]
+
+    @abstractmethod
+    def compute(self, case: Case) -> Mapping[str, float]:
+        """The numbers of a row, by the keys of `columns`; one left out is empty there."""
+
+
+def _described(value: Any) -> Described[Metric] | None:
+    """A metric, or the only instance of a class of them."""
+    if inspect.isclass(value) and issubclass(value, Metric):
+        if inspect.isabstract(value):
+            return None
+        value = value()
+    if not isinstance(value, Metric):
+        return None
+    for attribute, kind in (("name", str), ("topic", str), ("columns", tuple)):
+        if not isinstance(found := getattr(value, attribute, None), kind) or not found:
+            raise InvalidInput(f"{type(value).__name__}.{attribute} is {found!r}; expected a {kind.__name__}")
+    return Described(value.name, (inspect.getdoc(type(value)) or "").partition("\n")[0], value)
+
+
+METRICS: Kind[Metric] = Kind(
+    name="metrics",
+    singular="metric",
+    expected="a subclass of rectbench.Metric with a name, a topic and columns",
+    package="rectbench.metrics",
+    described=_described,
+    is_shared=True,
+)

@@ -1,0 +1,97 @@
+"""Two runs side by side, paired cell by cell."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+from scipy.stats import bootstrap
+
+from rectbench.runs.gating import KEY
+from rectbench.runs.record import LEADING, TEXTS, read_results
+from rectbench.types import FloatArray
+
+CONFIDENCE = 0.95
+RESAMPLES = 2000
+LEAST_PAIRS = 3
+"""Fewer pairs than these carry no interval."""
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """What changed from run A to run B.
+
+    `table` has a row for each method and metric: `pairs`, the medians of A and B, the median of the
+    paired differences B - A, and the ends `low`, `high` of its 95 % bootstrap interval (NaN for fewer
+    than 3 pairs). `unpaired` says which cells stand in one run alone, or failed in one.
+    """
+
+    table: pd.DataFrame
+    unpaired: tuple[str, ...]
+
+
+def compare(a: Path, b: Path) -> Comparison:
+    """Compare two runs; raises InvalidInput where either cannot be read."""
+    both = read_results(a).merge(read_results(b), on=KEY, how="outer", suffixes=("_a", "_b"), indicator=True)
+    ok = (both["status_a"] == "ok") & (both["status_b"] == "ok")
+    unpaired = tuple(_why_unpaired(row) for _, row in both[~ok].iterrows() if _differs(row))
+    metrics = [
+        name.removesuffix("_a")
+        for name in both.columns
+        if name.endswith("_a") and f"{name[:-2]}_b" in both and name[:-2] not in (*LEADING, *TEXTS)
+    ]
+    rows = [
+        {"method": method, "metric": metric, **_difference(cells[f"{metric}_a"], cells[f"{metric}_b"])}
+        for method, cells in both[ok].groupby("method", sort=True)
+        for metric in metrics
+    ]
+    columns = ["method", "metric", "pairs", "median_a", "median_b", "difference", "low", "high"]
+    table = pd.DataFrame(rows, columns=columns)
+    return Comparison(table[table["pairs"] > 0].reset_index(drop=True), unpaired)
+
+
+def _difference(a: pd.Series[float], b: pd.Series[float]) -> dict[str, float]:
+    pairs = a.notna() & b.notna()
+    first, second = a[pairs].to_numpy(dtype=float), b[pairs].to_numpy(dtype=float)
+    if not len(first):
+        return {"pairs": 0}
+    differences = second - first
+    low, high = _interval(differences)
+    return {
+        "pairs": len(first),
+        "median_a": float(np.median(first)),
+        "median_b": float(np.median(second)),
+        "difference": float(np.median(differences)),
+        "low": low,
+        "high": high,
+    }
+
+
+def _interval(differences: FloatArray) -> tuple[float, float]:
+    if len(differences) < LEAST_PAIRS:
+        return np.nan, np.nan
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # equal differences have an interval of no width, and that is right
+        found = bootstrap(
+            (differences,),
+            np.median,
+            n_resamples=RESAMPLES,
+            confidence_level=CONFIDENCE,
+            method="percentile",
+            rng=np.random.default_rng(0),
+        )
+    return float(found.confidence_interval.low), float(found.confidence_interval.high)
+
+
+def _differs(row: pd.Series[str]) -> bool:
+    return bool(row["_merge"] != "both" or row["status_a"] != row["status_b"])
+
+
+def _why_unpaired(row: pd.Series[str]) -> str:
+    cell = f"{row['method']} on {row['scene']}/{row['rig']}/{row['motion']}/{row['pose']}/seed {row['seed']}"
+    if row["_merge"] == "both":
+        return f"{cell}: {row['status_a']} in A, {row['status_b']} in B"
+    return f"{cell}: only in {'A' if row['_merge'] == 'left_only' else 'B'}"
