@@ -39,7 +39,7 @@ class Rendering(BaseModel):
 
 
 @dataclass(frozen=True)
-class Part:
+class StatedPart:
     """A part of a report: all the cells of its pairs × poses × methods × seeds, and what is made of them."""
 
     name: str
@@ -67,7 +67,7 @@ class Part:
 
 @dataclass(frozen=True)
 class _Source:
-    parts: tuple[Part, ...]
+    parts: tuple[StatedPart, ...]
     found: Photographs | None = None
     """What is in the folder, for photographs once they are located."""
 
@@ -96,7 +96,7 @@ class Rendered(_Source):
             raise InvalidInput(f"report {report} renders its pairs; expected no --data")
         return self
 
-    def specs(self, part: Part) -> Iterator[RenderedSpec]:
+    def specs(self, part: StatedPart) -> Iterator[RenderedSpec]:
         """What is to be rendered for a part; raises UnknownName for a scene, rig or motion that is none."""
         from rectbench.experiments.naming import plugins_named, require_known, rigs_named
         from rectbench.plugins.scene import SCENES
@@ -167,7 +167,7 @@ class Photographed(_Source):
         pairs = tuple((pair.name, pair.calibration.name, AS_CALIBRATED) for pair in found.pairs)
         return Photographed(tuple(replace(part, pairs=pairs) for part in self.parts), found)
 
-    def specs(self, part: Part) -> Iterator[PhotographedSpec]:
+    def specs(self, part: StatedPart) -> Iterator[PhotographedSpec]:
         """The photographs of a part, which are what they are: nothing about them can be asked for."""
         assert self.found is not None, "photographs are located before they are planned"
         of_name = {(pair.name, pair.calibration.name): pair for pair in self.found.pairs}

@@ -11,7 +11,7 @@ from typing import Any
 
 from rectbench.errors import InvalidInput
 from rectbench.experiments.naming import plugins_named, require_known
-from rectbench.experiments.pair_sources import PairName, PairSource, Part
+from rectbench.experiments.pair_sources import PairName, PairSource, StatedPart
 from rectbench.experiments.spec import REPORTS, Report
 from rectbench.experiments.tasks import Cell, CellTask
 from rectbench.pairs.finding.photographs import Photographs
@@ -53,7 +53,7 @@ class OwnNames:
     seeds: tuple[int, ...]
 
     @classmethod
-    def of(cls, parts: Sequence[Part]) -> OwnNames:
+    def of(cls, parts: Sequence[StatedPart]) -> OwnNames:
         """Those of all the parts, each once."""
         pairs = [pair for part in parts for pair in part.pairs]
         return cls(
@@ -120,7 +120,7 @@ def make_plan(report: Report, selection: Selection | None = None, data: str | Pa
 
 
 def _tasks_of(
-    part: Part, source: PairSource, report: Report, own: OwnNames, chosen: Selection
+    part: StatedPart, source: PairSource, report: Report, own: OwnNames, chosen: Selection
 ) -> Iterator[CellTask]:
     """The cells of one part of a report, pair by pair."""
     names = _chosen_methods(part, own, chosen)
@@ -180,14 +180,16 @@ def _chosen_names(chosen: Sequence[Any] | None, own: Sequence[Any]) -> list[Any]
     return [*(instead or (own if added else ())), *added]
 
 
-def _chosen_methods(part: Part, own: OwnNames, chosen: Selection) -> list[str]:
+def _chosen_methods(part: StatedPart, own: OwnNames, chosen: Selection) -> list[str]:
     """The methods of a part that a run is to have: its own, and those that no part has."""
     names = _chosen_names(chosen.methods, own.methods)
     foreign = [name for name in names if name not in own.methods]
     return [*(name for name in part.methods if name in names), *(foreign if part.is_open else ())]
 
 
-def _chosen_pairs(part: Part, source: PairSource, own: OwnNames, chosen: Selection) -> tuple[PairName, ...]:
+def _chosen_pairs(
+    part: StatedPart, source: PairSource, own: OwnNames, chosen: Selection
+) -> tuple[PairName, ...]:
     """The pairs of a part that a run is to have, in the part's order."""
     pairs = part.pairs
     for place, kind in enumerate(("scenes", "rigs")):
@@ -210,7 +212,7 @@ def _with(pair: PairName, place: int, name: str) -> PairName:
     return scene, rig, motion
 
 
-def _chosen_seeds(part: Part, own: OwnNames, chosen: Selection) -> tuple[int, ...]:
+def _chosen_seeds(part: StatedPart, own: OwnNames, chosen: Selection) -> tuple[int, ...]:
     """The seeds of a part that a run is to have: its own, and those that no part has."""
     seeds = _chosen_names(chosen.seeds, own.seeds)
     for seed in seeds:

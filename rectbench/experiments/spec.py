@@ -14,10 +14,10 @@ from rectbench.experiments.pair_sources import (
     Grouped,
     PairName,
     PairSource,
-    Part,
     Photographed,
     Rendering,
     StatedPairs,
+    StatedPart,
 )
 from rectbench.pairs.spec import CALIBRATED, ESTIMATED
 from rectbench.registry.kind import Described, Kind
@@ -171,17 +171,17 @@ class Report(Rendering, GivenMatches, CellLimits):
         return Grouped if self.groups else StatedPairs if self.pairs else Grid
 
     @property
-    def parts(self) -> tuple[Part, ...]:
+    def parts(self) -> tuple[StatedPart, ...]:
         """The groups, with what they leave to the report; a report without groups as one without a name."""
         pairs = self.pairs or tuple(itertools.product(self.scenes, self.rigs, self.motions))
         one = {"name": "", "pairs": pairs, "methods": self.methods, "options": self.options}
         return tuple(map(self._part, self.groups or (Group.model_validate(one),)))
 
-    def _part(self, group: Group) -> Part:
+    def _part(self, group: Group) -> StatedPart:
         metrics = self.metrics if group.metrics is None else group.metrics
         figures = self.figures if group.figures is None else group.figures
         width = self.image_width if group.image_width is None else group.image_width
-        return Part(
+        return StatedPart(
             name=group.name,
             title=group.title,
             pairs=group.pairs,

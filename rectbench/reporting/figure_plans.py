@@ -49,7 +49,7 @@ def _part_plans(part: Run, run: Run, sources: Sources) -> Iterator[Plan]:
 
 
 def _bar_plans(run: Run) -> Iterator[Plan]:
-    if run.group or not run.pair_source.has_truth:
+    if run.group or not run.has_truth:
         yield from _pair_bar_plans(run)
         return
     if "row_error_mean_px" in run.metrics:
@@ -77,7 +77,7 @@ def _pair_bar_plans(run: Run) -> Iterator[Plan]:
             chart = pair_chart(run, "row error [px]", ROW_ERRORS, pose, reference=1.0)
             name = named(run, "row-error", pose if len(run.noisy_poses) > 1 else "")
             caption = "Mean row error on each pair, measured in the images" + (
-                " and against the truth." if run.pair_source.has_truth else "."
+                " and against the truth." if run.has_truth else "."
             )
             yield _bars(run, chart, name, f"Row error, {pose} pose", caption)
     pose = run.geometric_pose
@@ -181,12 +181,12 @@ class Picture:
         )
 
     def _caption(self, run: Run) -> str:
-        return self.caption if run.pair_source.has_truth else self.of_photographs or self.caption
+        return self.caption if run.has_truth else self.of_photographs or self.caption
 
 
 def _pair_words(run: Run, pair: Row) -> str:
     """What the picture's pair is called."""
-    motion = f", {pair.motion}" if run.pair_source.has_truth else ""
+    motion = f", {pair.motion}" if run.has_truth else ""
     return f"{run.pair_source.scene_word.capitalize()} {pair.scene}, rig {pair.rig}{motion}"
 
 

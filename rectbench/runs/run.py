@@ -11,12 +11,14 @@ from typing import Any
 import pandas as pd
 
 from rectbench.errors import InvalidInput
-from rectbench.experiments.pair_sources import PairSource, Part
+from rectbench.experiments.pair_sources import PairSource, StatedPart
 from rectbench.metrics.catalogue import in_display_order
 from rectbench.runs.record import LEADING, PARQUET, RunRecord, read_record
 from rectbench.runs.rows import Row, distinct, read_rows
 
 EXACT_POSE = "exact"
+Result = Row
+"""The name by which charts and pictures know a row."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +70,12 @@ class Run:
         return self.record.spec.pair_source
 
     @property
-    def stated_part(self) -> Part | None:
+    def has_truth(self) -> bool:
+        """Whether anybody knows the truth about its pairs, as nobody does about photographs."""
+        return self.pair_source.has_truth
+
+    @property
+    def stated_part(self) -> StatedPart | None:
         """What the report states of this part; None of a whole run of several, and of a part that is new."""
         return next((part for part in self.pair_source.parts if part.name == self.group), None)
 

@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING
 from rectbench.metrics.catalogue import column
 from rectbench.reporting.style import COLUMN_INCHES, FAINT, INK, PAGE_INCHES, looks, plain_log_ticks
 from rectbench.reporting.tables.labels import pair_labels
-from rectbench.runs.rows import Row
-from rectbench.runs.run import Run
+from rectbench.runs.run import Result, Run
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -110,7 +109,7 @@ def pair_chart(
     return BarChart(label, floor, reference, run.methods, panels, linear=linear)
 
 
-def _is_not_to_be_had(results: Sequence[Row], key: str) -> bool:
+def _is_not_to_be_had(results: Sequence[Result], key: str) -> bool:
     """Whether a pair has no such number though nothing failed, as one without a board has no board's."""
     return all(r.ok and key not in r.metrics for r in results)
 
@@ -132,7 +131,7 @@ def stage_chart(run: Run, stages: Mapping[str, str], stated: Mapping[str, float]
     return BarChart("time [s]", 1e-4, None, run.methods, panels, stated)
 
 
-def _bar(results: Sequence[Row], key: str, scale: float) -> Bar:
+def _bar(results: Sequence[Result], key: str, scale: float) -> Bar:
     values = [r.metrics[key] * scale for r in results if r.ok and math.isfinite(r.metrics.get(key, math.nan))]
     failed = [r.status for r in results if not r.ok]
     failure = failed[0] if failed else "no value" if len(values) < len(results) else ""

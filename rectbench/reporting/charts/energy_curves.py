@@ -22,7 +22,7 @@ from rectbench.metrics.energy import (
 from rectbench.reporting.sources import Sources, attempted
 from rectbench.reporting.style import INK, PAGE_INCHES
 from rectbench.reporting.tables.numbers import three_digits
-from rectbench.runs.rows import Row
+from rectbench.runs.run import Result
 from rectbench.warps import Rectification
 
 if TYPE_CHECKING:
@@ -60,7 +60,7 @@ class Shape:
     curves: tuple[EnergyCurve, ...]
 
 
-def draw_energy(sources: Sources, results: Sequence[Row]) -> Figure:
+def draw_energy(sources: Sources, results: Sequence[Result]) -> Figure:
     """A row a method whose maps are cubics: three slices as contours, and the curves.
 
     Raises Unsupported with the reason where no method has a shape.
@@ -82,7 +82,7 @@ def draw_energy(sources: Sources, results: Sequence[Row]) -> Figure:
     return figure
 
 
-def _shape(sources: Sources, result: Row) -> Shape:
+def _shape(sources: Sources, result: Result) -> Shape:
     rect = sources.rectification(result)
     if not has_cubics(rect):
         raise Unsupported(f"{result.method} has no cubics")

@@ -12,7 +12,7 @@ from rectbench.cameras import Camera
 from rectbench.reporting.pictures.panels import fit_into_box, panel_grid, write_head, write_message
 from rectbench.reporting.sources import Sources, attempted
 from rectbench.reporting.style import FAINT, INK, PAGE_INCHES, looks
-from rectbench.runs.rows import Row
+from rectbench.runs.run import Result
 from rectbench.types import FloatArray
 from rectbench.warps import Warp
 
@@ -40,7 +40,7 @@ class Cells:
     size: tuple[int, int]
 
 
-def draw_squares(sources: Sources, results: Sequence[Row], methods: Sequence[str]) -> Figure:
+def draw_squares(sources: Sources, results: Sequence[Result], methods: Sequence[str]) -> Figure:
     """The squares in the left source image, then where and how each method maps them."""
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import LogNorm
@@ -102,7 +102,7 @@ def _unit_outline() -> FloatArray:
     return np.concatenate([np.stack(side, axis=-1) for side in sides])
 
 
-def _mapped(sources: Sources, result: Row, squares: FloatArray) -> Cells:
+def _mapped(sources: Sources, result: Result, squares: FloatArray) -> Cells:
     rect = sources.rectification(result)
     return mapped_cells(rect.left, squares, rect.size)
 

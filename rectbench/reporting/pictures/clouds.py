@@ -15,7 +15,7 @@ from rectbench.reporting.pictures.views import Floats, Patches, Picture, View, p
 from rectbench.reporting.sources import Sources, attempted
 from rectbench.reporting.style import looks
 from rectbench.reporting.tables.numbers import shown
-from rectbench.runs.rows import Row
+from rectbench.runs.run import Result
 from rectbench.types import FloatArray
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ _NOTED = ("reconstruction_completeness", "reconstruction_density")
 _BORDER = "#bbbbbb"
 
 
-def draw_clouds(sources: Sources, results: Sequence[Row], methods: Sequence[str]) -> Figure:
+def draw_clouds(sources: Sources, results: Sequence[Result], methods: Sequence[str]) -> Figure:
     """A row the truth, if it is known, and a row a method: seen from beside the cameras, and from above."""
     known = sources.pair(results[0])
     clouds = [
@@ -66,7 +66,7 @@ def _true_patches(pair: StereoPair, truth: Truth) -> Patches:
     return patches_of(np.where(truth.visible_left[..., None], truth.points_left, np.nan), pair.left)
 
 
-def _reconstructed(sources: Sources, result: Row) -> Patches:
+def _reconstructed(sources: Sources, result: Result) -> Patches:
     cloud = sources.reconstruction(result)
     return patches_of(cloud.points, cloud.colours)
 
@@ -75,7 +75,7 @@ def _pictures(patches: Patches, views: Sequence[View]) -> list[Picture]:
     return [splat(patches, view, SIZE) for view in views]
 
 
-def _note(result: Row) -> str:
+def _note(result: Result) -> str:
     keys = [key for key in _NOTED if key in result.metrics]
     return ",  ".join(f"{column(k).heading} {shown(result.metrics[k], column(k))} %" for k in keys)
 

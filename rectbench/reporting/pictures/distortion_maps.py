@@ -16,7 +16,7 @@ from rectbench.reporting.sources import Side, Sources, attempted
 from rectbench.reporting.style import LOST, PAGE_INCHES, looks, plain_log_ticks
 from rectbench.reporting.tables.numbers import decade, three_digits
 from rectbench.rigs import Rig
-from rectbench.runs.rows import Row
+from rectbench.runs.run import Result
 from rectbench.types import FloatArray
 from rectbench.warps import Rectification
 
@@ -42,7 +42,7 @@ class SideMap:
     lens: NDArray[np.bool_]
 
 
-def draw_distortion_maps(sources: Sources, results: Sequence[Row], methods: Sequence[str]) -> Figure:
+def draw_distortion_maps(sources: Sources, results: Sequence[Result], methods: Sequence[str]) -> Figure:
     """A panel a method, left and right image in it, three panels to a row."""
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import LogNorm
@@ -94,7 +94,7 @@ def _shades() -> Colormap:
     return colormaps["viridis"].with_extremes(over=BEYOND, bad=LOST)
 
 
-def _maps(sources: Sources, result: Row, rig: Rig) -> tuple[SideMap, SideMap]:
+def _maps(sources: Sources, result: Result, rig: Rig) -> tuple[SideMap, SideMap]:
     rect = sources.rectification(result)
     left, right = (_side_map(sources, rect, rig, side) for side in _SIDES)
     return left, right

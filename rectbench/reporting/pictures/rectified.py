@@ -15,7 +15,7 @@ from rectbench.reporting.pictures.panels import fit_into_box, panel_grid, write_
 from rectbench.reporting.sources import Sources, attempted
 from rectbench.reporting.style import PAGE_INCHES, looks
 from rectbench.reporting.tables.numbers import shown
-from rectbench.runs.rows import Row
+from rectbench.runs.run import Result
 from rectbench.types import FloatArray, Matches
 from rectbench.warps import Rectification
 
@@ -63,7 +63,7 @@ class Panel:
     shown: Shown
 
 
-def draw_rectified(sources: Sources, results: Sequence[Row], methods: Sequence[str]) -> Figure:
+def draw_rectified(sources: Sources, results: Sequence[Result], methods: Sequence[str]) -> Figure:
     """The originals, then each method's rectified pair, two pairs to a row.
 
     Raises whatever the sources raise for the pair itself; a method that fails shows why in its place.
@@ -88,7 +88,7 @@ def draw_rectified(sources: Sources, results: Sequence[Row], methods: Sequence[s
     return figure
 
 
-def _panel(sources: Sources, result: Row, pair: StereoPair, marks: Shown) -> Panel:
+def _panel(sources: Sources, result: Result, pair: StereoPair, marks: Shown) -> Panel:
     rect = sources.rectification(result)
     errors = [key for key in _ERRORS if key in result.metrics][:1]
     keys = [*errors, *(key for key in ("log_distortion",) if key in result.metrics)]

@@ -56,7 +56,7 @@ def _methods_tables(part: Run) -> Iterator[Table]:
     if is_ranked(part):
         yield from main_tables(part)
         yield distortion_table(part)
-    if not part.pair_source.has_truth and _measures(part, ROW_KEYS):
+    if not part.has_truth and _measures(part, ROW_KEYS):
         yield from photographs_row_tables(part)
     elif part.group and _measures(part, ROW_KEYS):
         yield rows_table(part)
@@ -145,7 +145,7 @@ def pose_table(run: Run) -> Table:
         part=run.group,
         name=named(run, "pose"),
         title=titled(run, "Poses estimated from the images"),
-        caption=("Against the true pose" if run.pair_source.has_truth else "Against the calibration")
+        caption=("Against the true pose" if run.has_truth else "Against the calibration")
         + "; averages over seeds, and the median over all. σ is what the estimate believes.",
         headings=(
             Heading("pair", "pair", numeric=False),

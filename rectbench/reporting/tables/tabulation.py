@@ -72,7 +72,7 @@ def is_ranked(run: Run) -> bool:
 
 def _main_table(run: Run, pose: str) -> Table:
     results = run.select(pose=pose)
-    shown = MAIN_KEYS if run.pair_source.has_truth else PHOTOGRAPH_KEYS
+    shown = MAIN_KEYS if run.has_truth else PHOTOGRAPH_KEYS
     keys = [key for key in shown if key in run.metrics]
     methods = [m for m in run.methods if any(r.method == m for r in results)]
     summaries = ranked(summarise(m, [r for r in results if r.method == m], keys) for m in methods)
@@ -97,7 +97,7 @@ def _main_table(run: Run, pose: str) -> Table:
         )
         for i, s in enumerate(summaries)
     )
-    pairs = _pairs_text(results) if run.pair_source.has_truth else _photographs_text(results)
+    pairs = _pairs_text(results) if run.has_truth else _photographs_text(results)
     caption = f"Averages over {pairs}, ranked by log distortion."
     return Table(
         kind="main",
