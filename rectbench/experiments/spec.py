@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterable, Mapping
+from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, model_validator
 
 from rectbench.experiments.claims import Claim
+from rectbench.plugins.figure import FIGURES, usual_figures
+from rectbench.registry import is_path, registry
 from rectbench.registry.kind import Described, Kind
 
 Metric = Literal[
@@ -24,11 +27,18 @@ Metric = Literal[
 """Distortion at the grid alone; all of distortion, coverage and order; row error of the truth, of SIFT
 matches in the images, and of a calibration board's corners where they show one; depth from dense matching;
 the shape of the energy; times."""
-Figures = Literal["bars", "scatter", "pairs", "maps", "energy", "starts", "squares", "clouds", "timing"]
 Names = Annotated[tuple[str, ...], Field(min_length=1)]
 Slug = Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9-]*$")]
 PairName = tuple[str, str, str]
 """Scene, rig, motion."""
+
+
+def _found_from_anywhere(name: str) -> str:
+    return str(Path(name).resolve()) if is_path(name) else name
+
+
+FigureName = Annotated[str, AfterValidator(_found_from_anywhere)]
+"""A figure's name, or the absolute path of its file."""
 
 
 def _one_set_is_a_list_of_one(options: Any) -> Any:
@@ -41,7 +51,6 @@ OptionSets = Annotated[Mapping[str, tuple[dict[str, Any], ...]], BeforeValidator
 
 IMAGE_METRICS = frozenset({"row_error_features", "row_error_board", "reconstruction"})
 TRUTH_METRICS = frozenset({"row_error", "reconstruction"})
-IMAGE_FIGURES = frozenset({"pairs", "clouds"})
 ESTIMATED = "estimated"
 """The pose that is estimated from the images themselves."""
 CALIBRATED = "calibrated"
@@ -59,7 +68,7 @@ class Group(BaseModel):
     methods: Names = Field(description="Rectifiers, by name or path.")
     options: OptionSets = Field(default_factory=dict, description="As a report's.")
     metrics: tuple[Metric, ...] | None = Field(default=None, description="In the place of the report's.")
-    figures: tuple[Figures, ...] | None = Field(default=None, description="In the place of the report's.")
+    figures: tuple[FigureName, ...] | None = Field(default=None, description="In the place of the report's.")
     seeds: Annotated[tuple[int, ...], Field(min_length=1)] | None = Field(
         default=None, description="In the place of the report's."
     )
@@ -132,8 +141,8 @@ class Report(BaseModel):
     timeout_s: float = Field(default=120.0, gt=0, description="After which a cell is stopped, seconds.")
     render_timeout_s: float = Field(default=1800.0, gt=0, description="The same for rendering one pair.")
     memory_gib: float = Field(default=4.0, gt=0, description="What one worker may allocate, GiB.")
-    figures: tuple[Figures, ...] | None = Field(
-        default=None, description="Figures to draw; None draws the usual ones."
+    figures: tuple[FigureName, ...] | None = Field(
+        default=None, description="Figures to draw, by name or path; None draws the usual ones."
     )
 
     @model_validator(mode="after")
@@ -218,9 +227,10 @@ class Report(BaseModel):
         """What is measured in a part."""
         return self.metrics if part.metrics is None else part.metrics
 
-    def figures_of(self, part: Group) -> tuple[Figures, ...] | None:
-        """The kinds of figures of a part; None draws the usual ones."""
-        return self.figures if part.figures is None else part.figures
+    def figures_of(self, part: Group) -> tuple[FigureName, ...]:
+        """The figures of a part; the usual ones where it asks for none."""
+        asked = self.figures if part.figures is None else part.figures
+        return usual_figures() if asked is None else asked
 
     def seeds_of(self, part: Group) -> tuple[int, ...]:
         """The repetitions of a part."""
@@ -231,13 +241,15 @@ class Report(BaseModel):
         return self.image_width if part.image_width is None else part.image_width
 
     def needs_images(self, part: Group) -> bool:
-        """Whether anything in a part asks for rendered images rather than the truth alone."""
-        figures = self.figures_of(part)
+        """Whether anything in a part asks for rendered images rather than the truth alone.
+
+        Raises UnknownName or InvalidInput for a figure that does not exist.
+        """
+        figures = [registry(FIGURES).get(name).value for name in self.figures_of(part)]
         return (
             ESTIMATED in self.poses
             or not IMAGE_METRICS.isdisjoint(self.metrics_of(part))
-            or figures is None
-            or not IMAGE_FIGURES.isdisjoint(figures)
+            or any("images" in figure.needs for figure in figures)
         )
 
     def needs_truth(self, part: Group) -> bool:
@@ -257,6 +269,6 @@ REPORTS: Kind[Report] = Kind(
     name="reports",
     singular="report",
     expected="a rectbench.Report",
-    package="rectbench_reports",
+    packages=("rectbench_reports",),
     described=_described,
 )

@@ -1,6 +1,6 @@
 """The one loader of plugins, wherever they come from.
 
-Built-ins are the files of a kind's package; installed packages announce theirs as entry points of the group
+Built-ins are the files of a kind's packages; installed packages announce theirs as entry points of the group
 `rectbench.<kind>`; and wherever a name is accepted, so is the path of a file. All of them see the same public
 names and get the same treatment.
 """
@@ -26,7 +26,7 @@ from pydantic import ValidationError
 from rectbench.errors import InvalidInput, UnknownName
 from rectbench.registry.kind import Described, Kind, Plugin
 from rectbench.registry.sources import plugin_digest
-from rectbench.store.keys import digest, file_digest
+from rectbench.store.keys import code_digest, digest, file_digest
 
 T = TypeVar("T")
 
@@ -116,8 +116,10 @@ def forget_plugins() -> None:
 @cache
 def _loaded(kind: Kind[Any]) -> Registry[Any]:
     found: Registry[Any] = Registry(kind)
-    for path in _built_in_files(kind.package):
-        found.add(str(path), lambda path=path: _built_in(kind, path))  # type: ignore[misc]
+    for package in kind.packages:
+        for path in _built_in_files(package):
+            module = f"{package}.{path.stem}"
+            found.add(str(path), lambda module=module, path=path: _built_in(kind, module, path))  # type: ignore[misc]
     for point in importlib.metadata.entry_points(group=f"rectbench.{kind.name}"):
         place = f"{point.group}:{point.name} = {point.value}"
         found.add(place, lambda point=point: _announced(kind, point))  # type: ignore[misc]
@@ -130,9 +132,11 @@ def _built_in_files(package: str) -> list[Path]:
     return sorted(path for folder in folders for path in folder.glob("*.py") if not path.stem.startswith("_"))
 
 
-def _built_in(kind: Kind[T], path: Path) -> list[Plugin[T]]:
-    module = importlib.import_module(f"{kind.package}.{path.stem}")
-    plugins = _plugins_in(kind, module, path, plugin_digest(path))
+def _built_in(kind: Kind[T], module: str, path: Path) -> list[Plugin[T]]:
+    loaded = importlib.import_module(module)
+    # One of rectbench's own modules sees more of it than the public names.
+    source = code_digest(module) if module.startswith("rectbench.") else plugin_digest(path)
+    plugins = _plugins_in(kind, loaded, path, source)
     return plugins if kind.is_shared else _require(kind, plugins)
 
 

@@ -3,73 +3,23 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any, Literal, Protocol, TypeVar
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import Any
 
 from rectbench.errors import InvalidInput, InvalidResult, RectbenchError
 from rectbench.experiments.tasks import CellTask
 from rectbench.metrics import Jacobians, distortion, distortion_of
 from rectbench.pairs.spec import PairSpec
+from rectbench.plugins.figure import Cloud, Result, Sources
 from rectbench.reporting import recall
 from rectbench.reporting.recall import KnownPair
-from rectbench.rigs import Rig
-from rectbench.runs.run import Result, Run
-from rectbench.types import FloatArray
+from rectbench.runs.run import Run
 from rectbench.warps import Rectification
 
-Side = Literal["left", "right"]
 Identity = tuple[Any, ...]
-Made = TypeVar("Made")
 _FINGERPRINT = "distortion_native"
 _SAME_FIT = 1e-3
-
-
-class Cloud(Protocol):
-    """Points in space, one for each pixel of an image."""
-
-    @property
-    def points(self) -> FloatArray:
-        """[H, W, 3] in the left camera's frame, metres; NaN where there is none."""
-
-    @property
-    def colours(self) -> NDArray[np.uint8]:
-        """[H, W, 3] RGB."""
-
-
-@dataclass(frozen=True)
-class Sources:
-    """How to get, for a cell, its images and what is known of them, its rectification, its distortion.
-
-    Parameters
-    ----------
-    pair : the images of a cell and what is known of them.
-    rectification : the cell's rectification, fitted again.
-    distortion : native distortion [N] of a rectification at pixels [N, 2] of one side of a rig.
-    reconstruction : the points that dense matching on the cell's rectified pair gives.
-    version : changes with whatever changes those answers while the cell's row stays the same.
-    """
-
-    pair: Callable[[Result], KnownPair]
-    rectification: Callable[[Result], Rectification]
-    distortion: Callable[[Rectification, Rig, Side, FloatArray], FloatArray]
-    reconstruction: Callable[[Result], Cloud]
-    version: Callable[[Result], str] = lambda result: ""
-
-
-def attempted(result: Result, make: Callable[[], Made]) -> Made | str:
-    """What `make` gives of a cell, or the reason why its picture is missing."""
-    if not result.ok:
-        return f"{result.status}: {result.reason}" if result.reason else result.status
-    try:
-        return make()
-    except Exception as error:  # a plugin's code runs here, and one picture is no reason to lose a report
-        return f"no picture: {error}" if isinstance(error, RectbenchError) else f"no picture: {error!r}"
 
 
 def sources_of(run: Run) -> Sources:

@@ -57,11 +57,6 @@ class Result:
         """The pair without its seed: scene, rig, motion."""
         return self.scene, self.rig, self.motion
 
-    @property
-    def is_random_start(self) -> bool:
-        """Whether it belongs to a study of random starts, and is no method of its own."""
-        return self.options.get("start") == "random"
-
 
 @dataclass(frozen=True)
 class Run:

@@ -38,6 +38,7 @@ def _with_packages(module: str) -> Iterator[str]:
     return (".".join(names[:count]) for count in range(2, len(names) + 1))
 
 
+@cache
 def _file_of(module: str, root: Path) -> Path | None:
     place = root.joinpath(*module.split(".")[1:])
     candidates = (place.with_suffix(".py"), place / "__init__.py")

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rectbench.cameras import Camera
-from rectbench.reporting.pictures.panels import fit_into_box, panel_grid, write_head, write_message
-from rectbench.reporting.sources import Sources, attempted
-from rectbench.reporting.style import FAINT, INK, PAGE_INCHES, looks
-from rectbench.runs.run import Result
+from rectbench.plugins.figure import FigureData, Look, Result, Sources
+from rectbench.reporting.pictures.pair_picture import PairPicture
+from rectbench.reporting.pictures.panels import attempted, fit_into_box, panel_grid, write_head, write_message
+from rectbench.reporting.style import FAINT, INK, PAGE_INCHES
 from rectbench.types import FloatArray
 from rectbench.warps import Warp
 
@@ -31,6 +31,25 @@ _REACHES = (1.25, 1.6, 2.5, 4.0)
 _BAR_INCHES = 0.72
 
 
+class Squares(PairPicture):
+    """What becomes of small squares of the left source image, all over the view."""
+
+    name = "squares"
+    topic = "Pictures"
+    stem = "squares"
+    title = "Unit squares"
+    caption = (
+        "Small squares of the left source image, and what each method makes of them where they land on its "
+        "output; the colour is the change of area S. Each output is fitted to its panel: compare sizes by "
+        "colour, not by eye."
+    )
+    shown_as = "svg"
+
+    def draw(self, results: Sequence[Result], given: FigureData) -> Figure:
+        """The source's squares, then a panel a method."""
+        return draw_squares(given.sources, results, given.looks)
+
+
 @dataclass(frozen=True)
 class Cells:
     """Outlines [n, m, 2] of squares in an image of `size`, and by what their areas changed [n]."""
@@ -40,7 +59,7 @@ class Cells:
     size: tuple[int, int]
 
 
-def draw_squares(sources: Sources, results: Sequence[Result], methods: Sequence[str]) -> Figure:
+def draw_squares(sources: Sources, results: Sequence[Result], looks: Mapping[str, Look]) -> Figure:
     """The squares in the left source image, then where and how each method maps them."""
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import LogNorm
@@ -56,9 +75,8 @@ def draw_squares(sources: Sources, results: Sequence[Result], methods: Sequence[
     norm = LogNorm(1 / reach, reach)
     columns = 2 if len(panels) in (2, 4) else 3
     figure, axes = panel_grid(len(panels), columns, camera.height / camera.width, _BAR_INCHES)
-    colours = looks(methods)
     for ax, (method, cells) in zip(axes, panels, strict=True):
-        colour = colours[method][0] if method else None
+        colour = looks[method].colour if method else None
         if isinstance(cells, str):
             write_message(ax, cells, 46)
             write_head(ax, method, colour=colour)

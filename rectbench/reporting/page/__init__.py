@@ -1,1 +1,1 @@
-"""The page of a run."""
+"""The page of a run, and what it says about the run itself. Imports all of reporting but `report`."""

@@ -61,47 +61,6 @@ def reproduce_command(run: Run) -> str:
     return _words(run.facts.get("command")) or f"rectbench run {run.report}"
 
 
-KINDS = ("bars", "scatter", "pairs", "maps", "energy", "starts", "squares", "clouds", "timing")
-"""The kinds of figures; a report, or a part of one, may ask for some of them."""
-USUAL_KINDS = ("bars", "scatter", "pairs", "maps")
-"""Those of a report that asks for none: what every method and every report has."""
-
-
-def wanted_kinds(run: Run) -> tuple[str, ...]:
-    """The kinds of figures that the report, or this part of it, asks for."""
-    for wanted in (_group_facts(run).get("figures"), run.facts.get("figures")):
-        if isinstance(wanted, list | tuple):
-            return tuple(map(str, wanted))
-    return USUAL_KINDS
-
-
-def part_title(run: Run) -> str:
-    """The heading of a part, else its name; nothing for a run without parts."""
-    return _words(_group_facts(run).get("title")) or run.group
-
-
-def stated_seconds(run: Run) -> dict[str, float]:
-    """Times that somebody else stated, by stage: `pose`, `fit`, `warp`."""
-    stated = _spec(run).get("stated_seconds")
-    return {str(k): float(v) for k, v in stated.items()} if isinstance(stated, Mapping) else {}
-
-
-def stated_claims(run: Run) -> list[Mapping[str, Any]]:
-    """The claims that the report puts to the test, as run.json holds them."""
-    claims = _spec(run).get("claims")
-    return list(claims) if isinstance(claims, list | tuple) else []
-
-
-def _spec(run: Run) -> Mapping[str, Any]:
-    spec = run.facts.get("spec")
-    return spec if isinstance(spec, Mapping) else {}
-
-
-def _group_facts(run: Run) -> Mapping[str, Any]:
-    groups = _spec(run).get("groups") or ()
-    return next((g for g in groups if run.group and g.get("name") == run.group), {})
-
-
 def full_json(run: Run) -> str:
     """run.json, indented, without its list of cells: the tables show those."""
     facts = {name: value for name, value in run.facts.items() if name != "cells"}

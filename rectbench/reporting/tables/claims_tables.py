@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from rectbench.plugins.metric import Column
-from rectbench.reporting.page.run_facts import stated_claims
+from rectbench.reporting.asked import stated_claims
 from rectbench.reporting.tables.table import Entry, Heading, Section, Table, number, whole, words
 from rectbench.reporting.tables.tabulation import counted
 from rectbench.runs.run import Run

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 
 from rectbench.images.stereo_pair import StereoPair
 from rectbench.metrics.catalogue import column
-from rectbench.reporting.pictures.panels import fit_into_box, panel_grid, write_head, write_message
-from rectbench.reporting.sources import Sources, attempted
-from rectbench.reporting.style import PAGE_INCHES, looks
+from rectbench.plugins.figure import FigureData, Look, Result, Sources
+from rectbench.reporting.pictures.pair_picture import PairPicture
+from rectbench.reporting.pictures.panels import attempted, fit_into_box, panel_grid, write_head, write_message
+from rectbench.reporting.style import PAGE_INCHES
 from rectbench.reporting.tables.numbers import shown
-from rectbench.runs.run import Result
 from rectbench.types import FloatArray, Matches
 from rectbench.warps import Rectification
 
@@ -35,6 +35,33 @@ _ERRORS = ("row_error_mean_px", "row_error_board_mean_px", "row_error_features_m
 _RING_SHARE = 0.025
 _GAP = 0.012
 Image = NDArray[np.generic]
+
+
+_CAPTION = (
+    "Scan lines run through {points} (rings): on a rectified pair both rings lie on the line, and both boxes "
+    "between the dashed ones. Each pair is fitted to its panel: sizes do not compare from one method to the "
+    "next."
+)
+
+
+class RectifiedPairs(PairPicture):
+    """Rectified pairs side by side, with scan lines through what corresponds."""
+
+    name = "pairs"
+    topic = "Pictures"
+    needs = frozenset({"images"})
+    usual = 3
+    stem = "rectified"
+    title = "Rectified pairs"
+    caption = _CAPTION.format(points="true correspondences")
+    caption_of_photographs = _CAPTION.format(
+        points="matches found in the images and corners of a board, if they show one"
+    )
+    dpi = PIXELS_PER_INCH
+
+    def draw(self, results: Sequence[Result], given: FigureData) -> Figure:
+        """The source images, then a panel a method."""
+        return draw_rectified(given.sources, results, given.looks)
 
 
 @dataclass(frozen=True)
@@ -63,7 +90,7 @@ class Panel:
     shown: Shown
 
 
-def draw_rectified(sources: Sources, results: Sequence[Result], methods: Sequence[str]) -> Figure:
+def draw_rectified(sources: Sources, results: Sequence[Result], looks: Mapping[str, Look]) -> Figure:
     """The originals, then each method's rectified pair, two pairs to a row.
 
     Raises whatever the sources raise for the pair itself; a method that fails shows why in its place.
@@ -77,14 +104,13 @@ def draw_rectified(sources: Sources, results: Sequence[Result], methods: Sequenc
     ]
     height, width = pair.left.shape[:2]
     figure, axes = panel_grid(len(panels), 2, height / ((2 + _GAP) * width))
-    colours = looks(methods)
     for ax, (method, panel) in zip(axes, panels, strict=True):
         if isinstance(panel, Panel):
             _draw_panel(ax, panel)
-            write_head(ax, method or "source images", panel.note, colours[method][0] if method else None)
+            write_head(ax, method or "source images", panel.note, looks[method].colour if method else None)
         else:
             write_message(ax, panel, 70)
-            write_head(ax, method, colour=colours[method][0])
+            write_head(ax, method, colour=looks[method].colour)
     return figure
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -11,12 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rectbench.cameras import Camera
-from rectbench.reporting.pictures.panels import fit_into_box, panel_grid, write_head, write_message
-from rectbench.reporting.sources import Side, Sources, attempted
-from rectbench.reporting.style import LOST, PAGE_INCHES, looks, plain_log_ticks
+from rectbench.plugins.figure import FigureData, Look, Result, Side, Sources
+from rectbench.reporting.pictures.pair_picture import PairPicture
+from rectbench.reporting.pictures.panels import attempted, fit_into_box, panel_grid, write_head, write_message
+from rectbench.reporting.style import LOST, PAGE_INCHES, plain_log_ticks
 from rectbench.reporting.tables.numbers import decade, three_digits
 from rectbench.rigs import Rig
-from rectbench.runs.run import Result
 from rectbench.types import FloatArray
 from rectbench.warps import Rectification
 
@@ -34,6 +34,24 @@ BEYOND = "#8c1d40"
 _SIDES: tuple[Side, Side] = ("left", "right")
 
 
+class DistortionMaps(PairPicture):
+    """Where in the image each method distorts: L of every pixel, in colours."""
+
+    name = "maps"
+    topic = "Pictures"
+    usual = 4
+    stem = "distortion-map"
+    title = "Distortion maps"
+    caption = (
+        "Native L of every pixel of both source images, one scale for all methods. The number is L over "
+        "the 500 pixels that the tables measure it at."
+    )
+
+    def draw(self, results: Sequence[Result], given: FigureData) -> Figure:
+        """A panel a method, both images in it."""
+        return draw_distortion_maps(given.sources, results, given.looks)
+
+
 @dataclass(frozen=True)
 class SideMap:
     """L on a grid [h, w] of one image, NaN where lost; and where the lens shows anything."""
@@ -42,7 +60,7 @@ class SideMap:
     lens: NDArray[np.bool_]
 
 
-def draw_distortion_maps(sources: Sources, results: Sequence[Result], methods: Sequence[str]) -> Figure:
+def draw_distortion_maps(sources: Sources, results: Sequence[Result], looks: Mapping[str, Look]) -> Figure:
     """A panel a method, left and right image in it, three panels to a row."""
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import LogNorm
@@ -58,9 +76,8 @@ def draw_distortion_maps(sources: Sources, results: Sequence[Result], methods: S
     norm = LogNorm(bottom, top)
     camera = rig.left
     figure, axes = panel_grid(len(panels), 3, camera.height / ((2 + _GAP) * camera.width), _BAR_INCHES)
-    colours = looks(methods)
     for ax, (result, maps) in zip(axes, panels, strict=True):
-        colour, native = colours[result.method][0], result.metrics.get("distortion_native")
+        colour, native = looks[result.method].colour, result.metrics.get("distortion_native")
         if isinstance(maps, str):
             write_message(ax, maps, 46)
             write_head(ax, result.method, colour=colour)

@@ -19,10 +19,11 @@ from rectbench.metrics.energy import (
     energy_slice,
     has_cubics,
 )
-from rectbench.reporting.sources import Sources, attempted
+from rectbench.plugins.figure import FigureData, Result, Sources
+from rectbench.reporting.pictures.pair_picture import PairPicture
+from rectbench.reporting.pictures.panels import attempted
 from rectbench.reporting.style import INK, PAGE_INCHES
 from rectbench.reporting.tables.numbers import three_digits
-from rectbench.runs.run import Result
 from rectbench.warps import Rectification
 
 if TYPE_CHECKING:
@@ -49,6 +50,25 @@ _LEVELS = 14
 _UNFEASIBLE = "#c4c4c4"
 _TOP_RISES = 3.0
 """Height of the curves' panel, in rises of the median curve: steeper ones leave it, and the bowl shows."""
+
+
+class Energy(PairPicture):
+    """The energy about the fit of each method that has coefficients to vary."""
+
+    name = "energy"
+    topic = "Energy"
+    stem = "energy"
+    title = "Energy about the fit"
+    caption = (
+        "L over two coefficients with the others held (the left image's Ψᵤ, and Ψᵥ of both), and over each "
+        "alone, where the steepest leave the panel. A change of 100 % turns the slope at the far end of the "
+        "range by the mean slope. Hatched: not convex; grey: rows or columns would change places."
+    )
+    shown_as = "svg"
+
+    def draw(self, results: Sequence[Result], given: FigureData) -> Figure:
+        """A row a method."""
+        return draw_energy(given.sources, results)
 
 
 @dataclass(frozen=True)
