@@ -318,7 +318,7 @@ def run(
     """
     from rectbench.experiments.execution import running
     from rectbench.progress import progress_for
-    from rectbench.reporting import write_report
+    from rectbench.reporting.report import write_report
 
     table = running.run(
         report,

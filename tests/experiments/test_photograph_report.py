@@ -17,7 +17,7 @@ import rectbench as rb
 from rectbench.experiments.execution.running import run
 from rectbench.experiments.planning import make_plan
 from rectbench.experiments.tasks import CellTask
-from rectbench.reporting import write_report
+from rectbench.reporting.report import write_report
 from rectbench.runs.gating import accept, gate
 from rectbench.store.store import STORE_VARIABLE
 from tests.conftest import Shell

@@ -15,8 +15,8 @@ import pandas as pd
 from rectbench.cameras import Camera
 from rectbench.images.stereo_pair import StereoPair
 from rectbench.metrics import distortion
+from rectbench.plugins.figure import Sources
 from rectbench.rendering.truth import Truth
-from rectbench.reporting import Sources
 from rectbench.reporting.recall import KnownPair
 from rectbench.rigs import Rig
 from rectbench.types import Matches

@@ -11,19 +11,23 @@ import pytest
 import rectbench as rb
 from rectbench.errors import Unsupported
 from rectbench.metrics.catalogue import PROTOCOLS, STAGES
-from rectbench.reporting import Sources
-from rectbench.reporting.charts.bars import draw_bars, pair_chart, stage_chart
-from rectbench.reporting.charts.energy_curves import draw_energy, shape_of
+from rectbench.plugins.figure import Sources
+from rectbench.reporting.charts.bars import pair_chart
+from rectbench.reporting.charts.energy import draw_energy, shape_of
+from rectbench.reporting.charts.grouped_bars import draw_bars
 from rectbench.reporting.charts.squares import mapped_cells, source_squares
+from rectbench.reporting.charts.timing import stage_chart
 from rectbench.reporting.pictures.clouds import SIZE, draw_clouds
-from rectbench.reporting.pictures.distortion_maps import BEYOND, draw_distortion_maps
-from rectbench.reporting.pictures.rectified import draw_rectified
+from rectbench.reporting.pictures.maps import BEYOND, draw_distortion_maps
+from rectbench.reporting.pictures.pairs import draw_rectified
 from rectbench.reporting.pictures.views import BACKGROUND, View, looking_at, patches_of, splat, two_views
+from rectbench.reporting.style import looks
 from rectbench.runs.run import read_run
-from tests.reporting.runs import fake_pair, fake_rectification, fake_rig, make_row, quick_rows
+from tests.reporting.runs import METHODS, fake_pair, fake_rectification, fake_rig, make_row, quick_rows
 
 WriteRun = Callable[..., Path]
 RIG = fake_rig(160)
+LOOKS = looks(tuple(METHODS))
 RED, BLUE = (200, 0, 0), (0, 0, 200)
 AHEAD = looking_at(np.zeros(3), np.array([0.0, 0.0, 1.0]))
 
@@ -148,7 +152,7 @@ def test_methods_without_cubics_have_no_energy_to_show(write_run: WriteRun, sour
 
 def test_marks_are_whole_or_not_there(write_run: WriteRun, sources: Sources) -> None:
     run = read_run(write_run([make_row("street", "t265", "exact", "conventional")]))
-    for ax in draw_rectified(sources, run.results, run.methods).axes:
+    for ax in draw_rectified(sources, run.results, looks(run.methods)).axes:
         rings = [line for line in ax.lines if line.get_marker() == "o"]
         assert rings
         assert len(ax.patches) % 2 == 0  # a box in each image
@@ -159,7 +163,7 @@ def test_marks_are_whole_or_not_there(write_run: WriteRun, sources: Sources) -> 
 
 def test_boxes_are_equally_large_and_level_on_a_rectified_pair(write_run: WriteRun, sources: Sources) -> None:
     run = read_run(write_run([make_row("street", "t265", "exact", "abraham")]))
-    source, rectified = draw_rectified(sources, run.results, run.methods).axes
+    source, rectified = draw_rectified(sources, run.results, looks(run.methods)).axes
     for ax in (source, rectified):
         assert len({round(box.get_width(), 6) for box in ax.patches}) == 1
     left, right = rectified.patches[::2], rectified.patches[1::2]
@@ -172,7 +176,7 @@ def test_boxes_are_equally_large_and_level_on_a_rectified_pair(write_run: WriteR
 def test_what_lies_beyond_the_scale_has_a_colour_of_its_own(write_run: WriteRun, sources: Sources) -> None:
     run = read_run(write_run([make_row("street", "t265", "exact", "abraham")]))
     torn = replace(sources, distortion=lambda rect, rig, side, px: np.full(len(px), 1e7))
-    figure = draw_distortion_maps(torn, run.results, run.methods)
+    figure = draw_distortion_maps(torn, run.results, looks(run.methods))
     shades = figure.axes[0].images[0].get_array()
     assert shades is not None
     wanted = [int(BEYOND[i : i + 2], 16) / 255 for i in (1, 3, 5)]
@@ -186,14 +190,14 @@ def test_protocols_stand_side_by_side_with_the_pairs_below(write_run: WriteRun) 
     shown = [title for key, title in PROTOCOLS.items() if key in run.metrics]
     assert list(chart.panels) == shown
     assert list(chart.panels[shown[0]]) == ["street\nt265", "room\nt265"]
-    axes = draw_bars(chart).axes[: len(shown)]
+    axes = draw_bars(chart, LOOKS).axes[: len(shown)]
     assert [ax.get_title() for ax in axes] == shown
 
 
 def test_stated_times_are_lines_with_their_number(write_run: WriteRun) -> None:
     row = make_row("street", "t265", "exact", "abraham", total_s=0.1)
     chart = stage_chart(read_run(write_run([row])), STAGES, {"fit": 3.0, "total": 15.0})
-    ax = draw_bars(chart).axes[0]
+    ax = draw_bars(chart, LOOKS).axes[0]
     assert [text.get_text() for text in ax.texts] == ["3", "15"]
     assert ax.get_yscale() == "log"
     assert ax.get_ylim()[1] > 15
@@ -204,7 +208,7 @@ def test_clouds_without_a_truth_have_a_row_a_method_and_one_view_of_all(
 ) -> None:
     run = read_run(write_run([make_row("a", "t265", "calibrated", m) for m in ("abraham", "conventional")]))
     known = replace(sources.pair(run.results[0]), truth=None)
-    figure = draw_clouds(replace(sources, pair=lambda result: known), run.results, run.methods)
+    figure = draw_clouds(replace(sources, pair=lambda result: known), run.results, looks(run.methods))
     pictures = [np.asarray(ax.images[0].get_array()) for ax in figure.axes if ax.images]
     assert len(pictures) == 4
     assert np.array_equal(pictures[0], pictures[2])  # the same perfect cloud, seen from the same place
@@ -218,7 +222,7 @@ def test_a_photographed_pair_without_matches_is_shown_without_marks(
     run = read_run(write_run([make_row("a", "t265", "calibrated", "abraham")]))
     nothing = rb.Matches(np.empty((0, 2)), np.empty((0, 2)))
     known = replace(sources.pair(run.results[0]), matches=nothing, truth=None)
-    figure = draw_rectified(replace(sources, pair=lambda result: known), run.results, run.methods)
+    figure = draw_rectified(replace(sources, pair=lambda result: known), run.results, looks(run.methods))
     for ax in figure.axes:
         assert ax.images
         assert not ax.patches
