@@ -20,7 +20,7 @@ from rectbench.reporting.charts.timing import stage_chart
 from rectbench.reporting.pictures.clouds import SIZE, draw_clouds
 from rectbench.reporting.pictures.maps import BEYOND, draw_distortion_maps
 from rectbench.reporting.pictures.pairs import draw_rectified
-from rectbench.reporting.pictures.views import BACKGROUND, View, looking_at, patches_of, splat, two_views
+from rectbench.reporting.pictures.views import BACKGROUND, View, looking_at, painted, patches_of, two_views
 from rectbench.reporting.style import looks
 from rectbench.runs.run import read_run
 from tests.reporting.runs import METHODS, fake_pair, fake_rectification, fake_rig, make_row, quick_rows
@@ -28,7 +28,7 @@ from tests.reporting.runs import METHODS, fake_pair, fake_rectification, fake_ri
 WriteRun = Callable[..., Path]
 RIG = fake_rig(160)
 LOOKS = looks(tuple(METHODS))
-RED, BLUE = (200, 0, 0), (0, 0, 200)
+RED, BLUE = np.array([(200, 0, 0), (0, 0, 200)], np.uint8)
 AHEAD = looking_at(np.zeros(3), np.array([0.0, 0.0, 1.0]))
 
 
@@ -38,11 +38,13 @@ def spot(where: Any) -> tuple[float, float]:
     return float(u.mean()), float(v.mean())
 
 
-def dots(points: Any, colours: Any, view: View, size: tuple[int, int]) -> Any:
-    """A picture of single points: a row of an image, with gaps."""
-    row = np.full((1, 2 * len(points), 3), np.nan)
-    row[0, ::2] = points
-    return splat(patches_of(row, np.repeat(np.array([colours], np.uint8), 2, axis=1)), view, size)
+def tiles(points: Any, colours: Any, view: View, size: tuple[int, int]) -> Any:
+    """A picture of squares of 10 cm about points: two by two pixels of an image each, with gaps."""
+    image = np.full((2, 3 * len(points), 3), np.nan)
+    for column, across in ((0, -0.05), (1, 0.05)):
+        for row, down in ((0, -0.05), (1, 0.05)):
+            image[row, column::3] = points + np.array([across, down, 0.0])
+    return painted(patches_of(image, np.repeat([colours], 3, axis=1).repeat(2, axis=0)), view, size)
 
 
 def wall(across: int, nearest: float, farthest: float) -> tuple[Any, Any]:
@@ -52,22 +54,22 @@ def wall(across: int, nearest: float, farthest: float) -> tuple[Any, Any]:
     return np.stack([u, v, np.ones_like(u)], axis=-1) * depth[..., None], np.zeros((*u.shape, 3), np.uint8)
 
 
-def test_the_nearer_point_hides_the_farther_one() -> None:
+def test_the_nearer_surface_hides_the_farther_one() -> None:
     points = np.array([[0.0, 0.0, 2.0], [0.0, 0.0, 5.0]])
     for order in ([0, 1], [1, 0]):
-        picture = dots(points[order], np.array([RED, BLUE])[order], AHEAD, (41, 31))
-        assert (picture[..., 0] > picture[..., 2]).sum() == 1
+        picture = tiles(points[order], np.array([RED, BLUE])[order], AHEAD, (41, 31))
+        assert (picture[..., 0] > picture[..., 2]).any()
         assert not (picture[..., 2] > picture[..., 0]).any()
 
 
 def test_what_is_behind_the_eye_or_no_number_is_not_drawn() -> None:
     points = np.array([[0.0, 0.0, -2.0], [np.nan, 0.0, 1.0], [0.0, 0.0, 0.0]])
-    assert (dots(points, np.zeros((3, 3)), AHEAD, (41, 31)) == BACKGROUND).all()
+    assert (tiles(points, np.zeros((3, 3), np.uint8), AHEAD, (41, 31)) == BACKGROUND).all()
 
 
 def test_a_view_keeps_right_and_down() -> None:
     points = np.array([[1.0, 0.0, 4.0], [0.0, 0.5, 4.0]])
-    picture = dots(points, [RED, BLUE], AHEAD, (80, 60)).astype(int)
+    picture = tiles(points, [RED, BLUE], AHEAD, (80, 60)).astype(int)
     assert spot(picture[..., 0] - picture[..., 2] > 50) == pytest.approx((60, 30), abs=1)
     assert spot(picture[..., 2] - picture[..., 0] > 50) == pytest.approx((40, 40), abs=1)
 
@@ -78,14 +80,14 @@ def test_a_slanted_surface_is_closed_from_anywhere(across: int, eye: tuple[float
     points, colours = wall(across, 3.0, 9.0)
     middle = points[across // 4, across // 2]
     view = replace(looking_at(np.array(eye), middle), width=0.2)
-    assert (splat(patches_of(points, colours), view, (120, 80)) == 0).all()
+    assert (painted(patches_of(points, colours), view, (120, 80)) == 0).all()
 
 
 def test_two_surfaces_are_not_joined() -> None:
     points, colours = wall(200, 2.0, 2.0)
     points[:, 100:] *= 2
     view = replace(looking_at(np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 3.0])), width=0.1)
-    assert (splat(patches_of(points, colours), view, (60, 40)) == BACKGROUND).all()
+    assert (painted(patches_of(points, colours), view, (60, 40)) == BACKGROUND).all()
 
 
 def test_views_show_most_of_what_both_cameras_see() -> None:
@@ -95,7 +97,7 @@ def test_views_show_most_of_what_both_cameras_see() -> None:
         np.where(seen[..., None], truth.points_left, np.nan), np.zeros((*seen.shape, 3), np.uint8)
     )
     for view in two_views(truth.points_left[seen], SIZE):
-        assert (splat(patches, view, SIZE) == 0).all(axis=-1).mean() > 0.3
+        assert (painted(patches, view, SIZE) == 0).all(axis=-1).mean() > 0.3
 
 
 def test_the_view_from_above_looks_through_the_ceiling() -> None:
@@ -104,7 +106,7 @@ def test_the_view_from_above_looks_through_the_ceiling() -> None:
     points = np.concatenate([floor, ceiling])
     colours = np.repeat(np.array([[RED], [BLUE]], np.uint8), 90, axis=0).repeat(90, axis=1)
     _, above = two_views(points.reshape(-1, 3), (80, 60))
-    picture = splat(patches_of(points, colours), above, (80, 60))
+    picture = painted(patches_of(points, colours), above, (80, 60))
     assert not (picture == BLUE).all(axis=-1).any()
     assert (picture == RED).all(axis=-1).mean() > 0.3
 

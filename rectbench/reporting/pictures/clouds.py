@@ -13,7 +13,7 @@ from rectbench.plugins.figure import FigureData, Look, Result, Sources
 from rectbench.rendering.truth import Truth
 from rectbench.reporting.pictures.pair_picture import PairPicture
 from rectbench.reporting.pictures.panels import attempted, fit_into_box, panel_grid, write_head, write_message
-from rectbench.reporting.pictures.views import Floats, Patches, Picture, View, patches_of, splat, two_views
+from rectbench.reporting.pictures.views import Floats, Patches, Picture, View, painted, patches_of, two_views
 from rectbench.reporting.tables.numbers import shown
 from rectbench.types import FloatArray
 
@@ -89,7 +89,7 @@ def _reconstructed(sources: Sources, result: Result) -> Patches:
 
 
 def _pictures(patches: Patches, views: Sequence[View]) -> list[Picture]:
-    return [splat(patches, view, SIZE) for view in views]
+    return [painted(patches, view, SIZE) for view in views]
 
 
 def _note(result: Result) -> str:
