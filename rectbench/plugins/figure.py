@@ -263,6 +263,8 @@ def _described(value: Any) -> Described[Figure] | None:
     for attribute in ("name", "topic"):
         if not isinstance(found := getattr(value, attribute, None), str) or not found:
             raise InvalidInput(f"{type(value).__name__}.{attribute} is {found!r}; expected a text")
+    if strange := sorted(value.needs - {"images"}):
+        raise InvalidInput(f"{type(value).__name__}.needs holds {strange[0]!r}; expected at most images")
     return Described(value.name, (inspect.getdoc(type(value)) or "").partition("\n")[0], value)
 
 

@@ -84,7 +84,10 @@ def draw_bars(chart: BarChart, looks: Mapping[str, Look]) -> Figure:
     columns = min(len(chart.panels), 4, most)
     columns = math.ceil(len(chart.panels) / math.ceil(len(chart.panels) / columns))
     rows = math.ceil(len(chart.panels) / columns)
-    figure = Figure(figsize=(width, 0.45 + 1.45 * rows + (0.18 if small else 0)), layout="constrained")
+    legend_columns = 3 if small else 6
+    legend_rows = math.ceil(len(chart.methods) / legend_columns)
+    height = 0.3 + 0.15 * legend_rows + 1.45 * rows
+    figure = Figure(figsize=(width, height), layout="constrained")
     axes = figure.subplots(rows, columns, sharey=not chart.linear, squeeze=False).ravel().tolist()
     slot_inches = (width - 0.5) / columns / slots
     scales = {is_linear: _scale(chart, is_linear) for is_linear in (False, True)}
@@ -103,7 +106,7 @@ def draw_bars(chart: BarChart, looks: Mapping[str, Look]) -> Figure:
         ax.set_axis_off()
     for ax in axes[: len(chart.panels) : columns]:
         ax.set_ylabel(chart.label)
-    _add_legend(figure, chart, looks, 3 if small else 6)
+    _add_legend(figure, chart, looks, legend_columns)
     return figure
 
 

@@ -78,7 +78,9 @@ def draw_scatter(data: Scatter, looks: Mapping[str, Look]) -> matplotlib.figure.
     from matplotlib.lines import Line2D
 
     width = PAGE_INCHES if len(data.panels) > 1 else COLUMN_INCHES
-    figure = matplotlib.figure.Figure(figsize=(width, 2.6), layout="constrained")
+    legend_columns = 3 if width == COLUMN_INCHES else 5
+    height = 2.45 + 0.15 * math.ceil(len(data.methods) / legend_columns)
+    figure = matplotlib.figure.Figure(figsize=(width, height), layout="constrained")
     axes = figure.subplots(1, len(data.panels), squeeze=False)[0]
     for ax, label, panel in zip(axes, data.label_y, data.panels, strict=True):
         for method, points in panel.items():
@@ -119,5 +121,5 @@ def draw_scatter(data: Scatter, looks: Mapping[str, Look]) -> matplotlib.figure.
         )
         for m in data.methods
     ]
-    figure.legend(handles=handles, loc="outside upper center", ncols=3 if width == COLUMN_INCHES else 5)
+    figure.legend(handles=handles, loc="outside upper center", ncols=legend_columns)
     return figure
