@@ -64,8 +64,10 @@ def bar_drawing(
     words = [caption]
     if chart.reference is not None:
         words.append(f"The dashed line is at {chart.reference:g} px.")
-    if len({r.seed for r in given.part.results}) > 1:
-        words.append("Bars are means over seeds, thin lines their range.")
+    bars = [bar for groups in chart.panels.values() for group in groups.values() for bar in group.values()]
+    if any(bar.least != bar.largest for bar in bars):
+        over = "seeds" if len({r.seed for r in given.part.results}) > 1 else "pairs and poses"
+        words.append(f"Bars are means over {over}, thin lines their range.")
     if given.part.failures:
         words.append("A cross marks a method that could not be measured there.")
     return Drawing(stem, title, " ".join(words), chart, lambda: draw_bars(chart, given.looks), of)
