@@ -11,18 +11,18 @@ import pytest
 import rectbench as rb
 from rectbench.errors import Unsupported
 from rectbench.metrics.catalogue import PROTOCOLS, STAGES
-from rectbench.plugins.figure import Sources
+from rectbench.plugins.figure import FigureData, Sources
 from rectbench.reporting.charts.bars import pair_chart
-from rectbench.reporting.charts.energy import draw_energy, shape_of
+from rectbench.reporting.charts.energy import Energy, shape_of
 from rectbench.reporting.charts.grouped_bars import draw_bars
 from rectbench.reporting.charts.squares import mapped_cells, source_squares
 from rectbench.reporting.charts.timing import stage_chart
-from rectbench.reporting.pictures.clouds import SIZE, draw_clouds
-from rectbench.reporting.pictures.maps import BEYOND, draw_distortion_maps
-from rectbench.reporting.pictures.pairs import draw_rectified
+from rectbench.reporting.pictures.clouds import SIZE, Clouds
+from rectbench.reporting.pictures.maps import BEYOND, DistortionMaps
+from rectbench.reporting.pictures.pairs import RectifiedPairs
 from rectbench.reporting.pictures.views import BACKGROUND, View, looking_at, painted, patches_of, two_views
 from rectbench.reporting.style import looks
-from rectbench.runs.run import read_run
+from rectbench.runs.run import Run, read_run
 from tests.reporting.runs import METHODS, fake_pair, fake_rectification, fake_rig, make_row, quick_rows
 
 WriteRun = Callable[..., Path]
@@ -30,6 +30,11 @@ RIG = fake_rig(160)
 LOOKS = looks(tuple(METHODS))
 RED, BLUE = np.array([(200, 0, 0), (0, 0, 200)], np.uint8)
 AHEAD = looking_at(np.zeros(3), np.array([0.0, 0.0, 1.0]))
+
+
+def given(run: Run, sources: Sources) -> FigureData:
+    """What a figure of the whole run is made from."""
+    return FigureData(run, run, sources, looks(run.methods))
 
 
 def spot(where: Any) -> tuple[float, float]:
@@ -147,14 +152,14 @@ def test_the_shape_of_an_energy_holds_its_fit_in_the_middle() -> None:
 def test_methods_without_cubics_have_no_energy_to_show(write_run: WriteRun, sources: Sources) -> None:
     run = read_run(write_run([make_row("street", "t265", "exact", "abraham")]))
     with pytest.raises(Unsupported, match="abraham has no cubics"):
-        draw_energy(sources, run.results)
+        Energy().draw(run.results, given(run, sources))
     run = read_run(write_run([make_row("street", "t265", "exact", "local-homography")]))
-    assert len(draw_energy(sources, run.results).axes) == 4
+    assert len(Energy().draw(run.results, given(run, sources)).axes) == 4
 
 
 def test_marks_are_whole_or_not_there(write_run: WriteRun, sources: Sources) -> None:
     run = read_run(write_run([make_row("street", "t265", "exact", "conventional")]))
-    for ax in draw_rectified(sources, run.results, looks(run.methods)).axes:
+    for ax in RectifiedPairs().draw(run.results, given(run, sources)).axes:
         rings = [line for line in ax.lines if line.get_marker() == "o"]
         assert rings
         assert len(ax.patches) % 2 == 0  # a box in each image
@@ -165,7 +170,7 @@ def test_marks_are_whole_or_not_there(write_run: WriteRun, sources: Sources) -> 
 
 def test_boxes_are_equally_large_and_level_on_a_rectified_pair(write_run: WriteRun, sources: Sources) -> None:
     run = read_run(write_run([make_row("street", "t265", "exact", "abraham")]))
-    source, rectified = draw_rectified(sources, run.results, looks(run.methods)).axes
+    source, rectified = RectifiedPairs().draw(run.results, given(run, sources)).axes
     for ax in (source, rectified):
         assert len({round(box.get_width(), 6) for box in ax.patches}) == 1
     left, right = rectified.patches[::2], rectified.patches[1::2]
@@ -178,7 +183,7 @@ def test_boxes_are_equally_large_and_level_on_a_rectified_pair(write_run: WriteR
 def test_what_lies_beyond_the_scale_has_a_colour_of_its_own(write_run: WriteRun, sources: Sources) -> None:
     run = read_run(write_run([make_row("street", "t265", "exact", "abraham")]))
     torn = replace(sources, distortion=lambda rect, rig, side, px: np.full(len(px), 1e7))
-    figure = draw_distortion_maps(torn, run.results, looks(run.methods))
+    figure = DistortionMaps().draw(run.results, given(run, torn))
     shades = figure.axes[0].images[0].get_array()
     assert shades is not None
     wanted = [int(BEYOND[i : i + 2], 16) / 255 for i in (1, 3, 5)]
@@ -210,7 +215,7 @@ def test_clouds_without_a_truth_have_a_row_a_method_and_one_view_of_all(
 ) -> None:
     run = read_run(write_run([make_row("a", "t265", "calibrated", m) for m in ("abraham", "conventional")]))
     known = replace(sources.pair(run.results[0]), truth=None)
-    figure = draw_clouds(replace(sources, pair=lambda result: known), run.results, looks(run.methods))
+    figure = Clouds().draw(run.results, given(run, replace(sources, pair=lambda result: known)))
     pictures = [np.asarray(ax.images[0].get_array()) for ax in figure.axes if ax.images]
     assert len(pictures) == 4
     assert np.array_equal(pictures[0], pictures[2])  # the same perfect cloud, seen from the same place
@@ -224,7 +229,7 @@ def test_a_photographed_pair_without_matches_is_shown_without_marks(
     run = read_run(write_run([make_row("a", "t265", "calibrated", "abraham")]))
     nothing = rb.Matches(np.empty((0, 2)), np.empty((0, 2)))
     known = replace(sources.pair(run.results[0]), matches=nothing, truth=None)
-    figure = draw_rectified(replace(sources, pair=lambda result: known), run.results, looks(run.methods))
+    figure = RectifiedPairs().draw(run.results, given(run, replace(sources, pair=lambda result: known)))
     for ax in figure.axes:
         assert ax.images
         assert not ax.patches

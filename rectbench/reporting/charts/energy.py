@@ -67,8 +67,26 @@ class Energy(PairPicture):
     shown_as = "svg"
 
     def draw(self, results: Sequence[Result], given: FigureData) -> Figure:
-        """A row a method."""
-        return draw_energy(given.sources, results)
+        """A row a method whose maps are cubics: three slices as contours, and the curves.
+
+        Raises Unsupported with the reason where no method has a shape.
+        """
+        sources = given.sources
+        from matplotlib.figure import Figure
+
+        found = [attempted(r, lambda r=r: _shape(sources, r)) for r in results]  # type: ignore[misc]
+        shapes = [shape for shape in found if isinstance(shape, Shape)]
+        if not shapes:
+            raise Unsupported(f"no energy to show: {'; '.join(map(str, found))}")
+        figure = Figure(figsize=(PAGE_INCHES, 1.95 * len(shapes)), layout="constrained")
+        grid = figure.subplots(len(shapes), len(SLICES) + 1, squeeze=False, width_ratios=[1, 1, 1, 1.05])
+        for axes, shape in zip(grid, shapes, strict=True):
+            for ax, over in zip(axes, shape.slices, strict=False):
+                _draw_slice(ax, over)
+            _draw_curves(axes[-1], shape.curves)
+            if len(shapes) > 1:
+                axes[0].set_ylabel(f"{shape.method}\n{axes[0].get_ylabel()}")
+        return figure
 
 
 @dataclass(frozen=True)
@@ -78,28 +96,6 @@ class Shape:
     method: str
     slices: tuple[EnergySlice, ...]
     curves: tuple[EnergyCurve, ...]
-
-
-def draw_energy(sources: Sources, results: Sequence[Result]) -> Figure:
-    """A row a method whose maps are cubics: three slices as contours, and the curves.
-
-    Raises Unsupported with the reason where no method has a shape.
-    """
-    from matplotlib.figure import Figure
-
-    found = [attempted(r, lambda r=r: _shape(sources, r)) for r in results]  # type: ignore[misc]
-    shapes = [shape for shape in found if isinstance(shape, Shape)]
-    if not shapes:
-        raise Unsupported(f"no energy to show: {'; '.join(map(str, found))}")
-    figure = Figure(figsize=(PAGE_INCHES, 1.95 * len(shapes)), layout="constrained")
-    grid = figure.subplots(len(shapes), len(SLICES) + 1, squeeze=False, width_ratios=[1, 1, 1, 1.05])
-    for axes, shape in zip(grid, shapes, strict=True):
-        for ax, over in zip(axes, shape.slices, strict=False):
-            _draw_slice(ax, over)
-        _draw_curves(axes[-1], shape.curves)
-        if len(shapes) > 1:
-            axes[0].set_ylabel(f"{shape.method}\n{axes[0].get_ylabel()}")
-    return figure
 
 
 def _shape(sources: Sources, result: Result) -> Shape:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rectbench.images.stereo_pair import StereoPair
 from rectbench.metrics.catalogue import column
-from rectbench.plugins.figure import FigureData, Look, Result, Sources
+from rectbench.plugins.figure import FigureData, Result, Sources
 from rectbench.rendering.truth import Truth
 from rectbench.reporting.pictures.pair_picture import PairPicture
 from rectbench.reporting.pictures.panels import attempted, fit_into_box, panel_grid, write_head, write_message
@@ -43,34 +43,30 @@ class Clouds(PairPicture):
     dpi = DPI
 
     def draw(self, results: Sequence[Result], given: FigureData) -> Figure:
-        """A row the truth, if it is known, and a row a method."""
-        return draw_clouds(given.sources, results, given.looks)
-
-
-def draw_clouds(sources: Sources, results: Sequence[Result], looks: Mapping[str, Look]) -> Figure:
-    """A row the truth, if it is known, and a row a method: seen from beside the cameras, and from above."""
-    known = sources.pair(results[0])
-    clouds = [
-        (r, attempted(r, lambda r=r: _reconstructed(sources, r)))  # type: ignore[misc]
-        for r in results
-    ]
-    # All are seen alike: from viewpoints made from the truth, else from what they show together.
-    points: FloatArray | Floats
-    if known.truth is not None:
-        points = known.truth.points_left[known.truth.visible_left]
-    else:
-        points = _together([patches for _, patches in clouds if not isinstance(patches, str)])
-    views = two_views(points, SIZE)
-    heads = 0 if known.truth is None else 2
-    figure, axes = panel_grid(2 * len(results) + heads, 2, SIZE[1] / SIZE[0])
-    if known.truth is not None:
-        _draw_row(axes[:2], _pictures(_true_patches(known.images, known.truth), views))
-        _write_heads(axes[:2], "truth", "the left image at its depth")
-    for i, (result, patches) in enumerate(clouds):
-        row = axes[heads + 2 * i : heads + 2 * i + 2]
-        _draw_row(row, patches if isinstance(patches, str) else _pictures(patches, views))
-        _write_heads(row, result.method, _note(result), looks[result.method].colour)
-    return figure
+        """A row the truth, if it is known, and a row a method: from beside the cameras, and from above."""
+        sources, looks = given.sources, given.looks
+        known = sources.pair(results[0])
+        clouds = [
+            (r, attempted(r, lambda r=r: _reconstructed(sources, r)))  # type: ignore[misc]
+            for r in results
+        ]
+        # All are seen alike: from viewpoints made from the truth, else from what they show together.
+        points: FloatArray | Floats
+        if known.truth is not None:
+            points = known.truth.points_left[known.truth.visible_left]
+        else:
+            points = _together([patches for _, patches in clouds if not isinstance(patches, str)])
+        views = two_views(points, SIZE)
+        heads = 0 if known.truth is None else 2
+        figure, axes = panel_grid(2 * len(results) + heads, 2, SIZE[1] / SIZE[0])
+        if known.truth is not None:
+            _draw_row(axes[:2], _pictures(_true_patches(known.images, known.truth), views))
+            _write_heads(axes[:2], "truth", "the left image at its depth")
+        for i, (result, patches) in enumerate(clouds):
+            row = axes[heads + 2 * i : heads + 2 * i + 2]
+            _draw_row(row, patches if isinstance(patches, str) else _pictures(patches, views))
+            _write_heads(row, result.method, _note(result), looks[result.method].colour)
+        return figure
 
 
 def _together(clouds: Sequence[Patches]) -> Floats:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rectbench.cameras import Camera
-from rectbench.plugins.figure import FigureData, Look, Result, Side, Sources
+from rectbench.plugins.figure import FigureData, Result, Side, Sources
 from rectbench.reporting.pictures.pair_picture import PairPicture
 from rectbench.reporting.pictures.panels import attempted, fit_into_box, panel_grid, write_head, write_message
 from rectbench.reporting.style import LOST, PAGE_INCHES, plain_log_ticks
@@ -48,8 +48,48 @@ class DistortionMaps(PairPicture):
     )
 
     def draw(self, results: Sequence[Result], given: FigureData) -> Figure:
-        """A panel a method, both images in it."""
-        return draw_distortion_maps(given.sources, results, given.looks)
+        """A panel a method, left and right image in it, three panels to a row."""
+        sources, looks = given.sources, given.looks
+        from matplotlib.cm import ScalarMappable
+        from matplotlib.colors import LogNorm
+        from matplotlib.patches import Patch
+
+        rig = sources.pair(results[0]).rig
+        panels = [
+            (r, attempted(r, lambda r=r: _maps(sources, r, rig)))  # type: ignore[misc]
+            for r in results
+        ]
+        shown = [m for _, maps in panels if not isinstance(maps, str) for m in maps]
+        bottom, top = _limits(shown)
+        norm = LogNorm(bottom, top)
+        camera = rig.left
+        figure, axes = panel_grid(len(panels), 3, camera.height / ((2 + _GAP) * camera.width), _BAR_INCHES)
+        for ax, (result, maps) in zip(axes, panels, strict=True):
+            colour, native = looks[result.method].colour, result.metrics.get("distortion_native")
+            if isinstance(maps, str):
+                write_message(ax, maps, 46)
+                write_head(ax, result.method, colour=colour)
+            else:
+                _draw_panel(ax, maps, norm)
+                write_head(ax, result.method, "" if native is None else f"L = {three_digits(native)}", colour)
+        bar_ax = figure.add_axes((1 - 0.85 * _BAR_INCHES / PAGE_INCHES, 0.1, 0.1 / PAGE_INCHES, 0.68))
+        bar = figure.colorbar(ScalarMappable(norm, _shades()), cax=bar_ax, extend="both")
+        plain_log_ticks(bar_ax.yaxis)
+        bar.set_label("distortion L")
+        bar.outline.set_linewidth(0.4)
+        if any((m.values > top).any() for m in shown):
+            bar_ax.annotate(
+                f"> {decade(top)}",
+                (0, 1.05),
+                xycoords="axes fraction",
+                xytext=(0, 4),
+                textcoords="offset points",
+                size=6.5,
+            )
+        if any(np.isnan(m.values[m.lens]).any() for m in shown):
+            patch = Patch(facecolor=LOST, label="not mapped")
+            figure.legend(handles=[patch], loc="lower right", borderaxespad=0, fontsize=6)
+        return figure
 
 
 @dataclass(frozen=True)
@@ -58,50 +98,6 @@ class SideMap:
 
     values: FloatArray
     lens: NDArray[np.bool_]
-
-
-def draw_distortion_maps(sources: Sources, results: Sequence[Result], looks: Mapping[str, Look]) -> Figure:
-    """A panel a method, left and right image in it, three panels to a row."""
-    from matplotlib.cm import ScalarMappable
-    from matplotlib.colors import LogNorm
-    from matplotlib.patches import Patch
-
-    rig = sources.pair(results[0]).rig
-    panels = [
-        (r, attempted(r, lambda r=r: _maps(sources, r, rig)))  # type: ignore[misc]
-        for r in results
-    ]
-    shown = [m for _, maps in panels if not isinstance(maps, str) for m in maps]
-    bottom, top = _limits(shown)
-    norm = LogNorm(bottom, top)
-    camera = rig.left
-    figure, axes = panel_grid(len(panels), 3, camera.height / ((2 + _GAP) * camera.width), _BAR_INCHES)
-    for ax, (result, maps) in zip(axes, panels, strict=True):
-        colour, native = looks[result.method].colour, result.metrics.get("distortion_native")
-        if isinstance(maps, str):
-            write_message(ax, maps, 46)
-            write_head(ax, result.method, colour=colour)
-        else:
-            _draw_panel(ax, maps, norm)
-            write_head(ax, result.method, "" if native is None else f"L = {three_digits(native)}", colour)
-    bar_ax = figure.add_axes((1 - 0.85 * _BAR_INCHES / PAGE_INCHES, 0.1, 0.1 / PAGE_INCHES, 0.68))
-    bar = figure.colorbar(ScalarMappable(norm, _shades()), cax=bar_ax, extend="both")
-    plain_log_ticks(bar_ax.yaxis)
-    bar.set_label("distortion L")
-    bar.outline.set_linewidth(0.4)
-    if any((m.values > top).any() for m in shown):
-        bar_ax.annotate(
-            f"> {decade(top)}",
-            (0, 1.05),
-            xycoords="axes fraction",
-            xytext=(0, 4),
-            textcoords="offset points",
-            size=6.5,
-        )
-    if any(np.isnan(m.values[m.lens]).any() for m in shown):
-        patch = Patch(facecolor=LOST, label="not mapped")
-        figure.legend(handles=[patch], loc="lower right", borderaxespad=0, fontsize=6)
-    return figure
 
 
 def _shades() -> Colormap:

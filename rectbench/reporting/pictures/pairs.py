@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from rectbench.images.stereo_pair import StereoPair
 from rectbench.metrics.catalogue import column
-from rectbench.plugins.figure import FigureData, Look, Result, Sources
+from rectbench.plugins.figure import FigureData, Result, Sources
 from rectbench.reporting.pictures.pair_picture import PairPicture
 from rectbench.reporting.pictures.panels import attempted, fit_into_box, panel_grid, write_head, write_message
 from rectbench.reporting.style import PAGE_INCHES
@@ -60,8 +60,30 @@ class RectifiedPairs(PairPicture):
     dpi = PIXELS_PER_INCH
 
     def draw(self, results: Sequence[Result], given: FigureData) -> Figure:
-        """The source images, then a panel a method."""
-        return draw_rectified(given.sources, results, given.looks)
+        """The originals, then each method's rectified pair, two pairs to a row.
+
+        Raises whatever the sources raise for the pair itself; a method that fails shows why in its place.
+        """
+        sources, looks = given.sources, given.looks
+        known = sources.pair(results[0])
+        pair, marks = known.images, _marks(known.matches, known.images)
+        panels: list[tuple[str, Panel | str]] = [("", Panel("", pair.left, pair.right, marks))]
+        panels += [
+            (r.method, attempted(r, lambda r=r: _panel(sources, r, pair, marks)))  # type: ignore[misc]
+            for r in results
+        ]
+        height, width = pair.left.shape[:2]
+        figure, axes = panel_grid(len(panels), 2, height / ((2 + _GAP) * width))
+        for ax, (method, panel) in zip(axes, panels, strict=True):
+            if isinstance(panel, Panel):
+                _draw_panel(ax, panel)
+                write_head(
+                    ax, method or "source images", panel.note, looks[method].colour if method else None
+                )
+            else:
+                write_message(ax, panel, 70)
+                write_head(ax, method, colour=looks[method].colour)
+        return figure
 
 
 @dataclass(frozen=True)
@@ -88,30 +110,6 @@ class Panel:
     left: Image
     right: Image
     shown: Shown
-
-
-def draw_rectified(sources: Sources, results: Sequence[Result], looks: Mapping[str, Look]) -> Figure:
-    """The originals, then each method's rectified pair, two pairs to a row.
-
-    Raises whatever the sources raise for the pair itself; a method that fails shows why in its place.
-    """
-    known = sources.pair(results[0])
-    pair, marks = known.images, _marks(known.matches, known.images)
-    panels: list[tuple[str, Panel | str]] = [("", Panel("", pair.left, pair.right, marks))]
-    panels += [
-        (r.method, attempted(r, lambda r=r: _panel(sources, r, pair, marks)))  # type: ignore[misc]
-        for r in results
-    ]
-    height, width = pair.left.shape[:2]
-    figure, axes = panel_grid(len(panels), 2, height / ((2 + _GAP) * width))
-    for ax, (method, panel) in zip(axes, panels, strict=True):
-        if isinstance(panel, Panel):
-            _draw_panel(ax, panel)
-            write_head(ax, method or "source images", panel.note, looks[method].colour if method else None)
-        else:
-            write_message(ax, panel, 70)
-            write_head(ax, method, colour=looks[method].colour)
-    return figure
 
 
 def _panel(sources: Sources, result: Result, pair: StereoPair, marks: Shown) -> Panel:

@@ -21,11 +21,7 @@ _HEAD_INCHES = 0.2
 
 
 def panel_grid(
-    count: int,
-    columns: int,
-    aspect: float,
-    margin_inches: float = 0.0,
-    gap_inches: float = _GAP_INCHES,
+    count: int, columns: int, aspect: float, margin_inches: float = 0.0, gap_inches: float = _GAP_INCHES
 ) -> tuple[Figure, list[Axes]]:
     """A figure of `count` bare boxes, each `aspect` times as high as wide, with room for a head.
 
