@@ -27,12 +27,17 @@ Side = Literal["left", "right"]
 
 
 class Result(Protocol):
-    """A cell of a run: one method on one pair, and what was measured."""
+    """A cell of a run: one method on one pair, and what was measured.
+
+    method : what it is called: its name, with its options where several sets of them ran.
+    pair : the images it is about, as scene, rig, motion and seed; `place` is that without the seed.
+    ok : whether it holds a measurement; otherwise `status` and `reason` say how it ended.
+    metrics : the numbers by column, in the columns' units; what was not measured is left out.
+    row : the row of `results.parquet`, with `method` and `options` as they are stored.
+    """
 
     @property
-    def scene(self) -> str:
-        """The scene, or what a pair of photographs is called."""
-
+    def scene(self) -> str: ...
     @property
     def rig(self) -> str: ...
     @property
@@ -42,61 +47,47 @@ class Result(Protocol):
     @property
     def seed(self) -> int: ...
     @property
-    def method(self) -> str:
-        """What the method is called: its name, with its options where several sets of them ran."""
-
+    def method(self) -> str: ...
     @property
-    def options(self) -> Mapping[str, Any]:
-        """The options that the method was given."""
-
+    def options(self) -> Mapping[str, Any]: ...
     @property
-    def status(self) -> str:
-        """`ok`, or how the cell ended otherwise."""
-
+    def pair(self) -> tuple[str, str, str, int]: ...
     @property
-    def reason(self) -> str:
-        """Why it holds no measurement; empty where it does."""
-
+    def place(self) -> tuple[str, str, str]: ...
     @property
-    def ok(self) -> bool:
-        """Whether it holds a measurement."""
-
+    def ok(self) -> bool: ...
     @property
-    def metrics(self) -> Mapping[str, float]:
-        """The numbers by column, in the columns' units; never NaN, which is left out."""
-
+    def status(self) -> str: ...
     @property
-    def row(self) -> Mapping[str, Any]:
-        """The row of `results.parquet`, `method` and `options` as they are stored."""
-
+    def reason(self) -> str: ...
     @property
-    def pair(self) -> tuple[str, str, str, int]:
-        """The images it is about: scene, rig, motion, seed."""
-
+    def metrics(self) -> Mapping[str, float]: ...
     @property
-    def place(self) -> tuple[str, str, str]:
-        """The same without the seed: scene, rig, motion."""
+    def row(self) -> Mapping[str, Any]: ...
 
 
 class Part(Protocol):
-    """The results of a part of a report, or of all of it; names are in the run's order, each once."""
+    """The results of a part of a report, or of all of it; names are in the run's order, each once.
+
+    group : the part's name; empty of a report without parts.
+    facts : the whole run's `run.json`.
+    failures : the results without a measurement.
+    metrics : the columns in which any cell has a number.
+    noisy_poses : those whose row errors say something: all but the exact one, or this if there is no other.
+    geometric_pose : the one under which distortion is shown: the exact one if there is one.
+    is_of_photographs : whether the pairs are photographs, about which nobody knows the truth.
+    select : of all results, or of the given ones, those whose attributes equal what is wanted:
+        `select(rig="t265", pose="exact")`.
+    """
 
     @property
-    def group(self) -> str:
-        """The part's name; empty of a report without parts."""
-
+    def group(self) -> str: ...
     @property
-    def facts(self) -> Mapping[str, Any]:
-        """The whole run's `run.json`."""
-
+    def facts(self) -> Mapping[str, Any]: ...
     @property
-    def results(self) -> tuple[Result, ...]:
-        """All cells, those without a measurement too."""
-
+    def results(self) -> tuple[Result, ...]: ...
     @property
-    def failures(self) -> tuple[Result, ...]:
-        """The cells without a measurement."""
-
+    def failures(self) -> tuple[Result, ...]: ...
     @property
     def methods(self) -> tuple[str, ...]: ...
     @property
@@ -106,55 +97,41 @@ class Part(Protocol):
     @property
     def motions(self) -> tuple[str, ...]: ...
     @property
-    def metrics(self) -> tuple[str, ...]:
-        """The columns that any cell has a number in."""
-
+    def metrics(self) -> tuple[str, ...]: ...
     @property
-    def noisy_poses(self) -> tuple[str, ...]:
-        """The poses whose row errors say something: all but the exact one, or this if there is no other."""
-
+    def noisy_poses(self) -> tuple[str, ...]: ...
     @property
-    def geometric_pose(self) -> str:
-        """The pose under which distortion is shown: the exact one if there is one."""
-
+    def geometric_pose(self) -> str: ...
     @property
-    def is_of_photographs(self) -> bool:
-        """Whether the pairs are photographs, about which nobody knows the truth."""
-
-    def select(self, results: Sequence[Any] | None = None, **wanted: Any) -> tuple[Any, ...]:
-        """Of all results, or of `results`, those whose attributes equal `wanted`: `select(rig="t265")`."""
+    def is_of_photographs(self) -> bool: ...
+    def select(self, results: Sequence[Any] | None = None, **wanted: Any) -> tuple[Any, ...]: ...
 
 
 class ShownPair(Protocol):
-    """The images of a cell, and what is known of them."""
+    """The images of a cell, and what is known of them.
+
+    rig : the true one; of photographs the calibrated one.
+    matches : pixels [N, 2] each that correspond: true ones, or of photographs those found in them.
+    truth : None of photographs.
+    """
 
     @property
-    def images(self) -> StereoPair:
-        """[H, W, 3] uint8 sRGB each."""
-
+    def images(self) -> StereoPair: ...
     @property
-    def rig(self) -> Rig:
-        """The true rig; of photographs the calibrated one."""
-
+    def rig(self) -> Rig: ...
     @property
-    def matches(self) -> Matches:
-        """Pixels [N, 2] each that correspond: true ones, or of photographs those found in them."""
-
+    def matches(self) -> Matches: ...
     @property
-    def truth(self) -> Truth | None:
-        """None of photographs."""
+    def truth(self) -> Truth | None: ...
 
 
 class Cloud(Protocol):
-    """Points in space, one for each pixel of an image."""
+    """Points [H, W, 3] in the left camera's frame, metres, NaN where there is none; colours [H, W, 3] RGB."""
 
     @property
-    def points(self) -> FloatArray:
-        """[H, W, 3] in the left camera's frame, metres; NaN where there is none."""
-
+    def points(self) -> FloatArray: ...
     @property
-    def colours(self) -> NDArray[np.uint8]:
-        """[H, W, 3] RGB."""
+    def colours(self) -> NDArray[np.uint8]: ...
 
 
 @dataclass(frozen=True)

@@ -1,1 +1,1 @@
-"""Figures of numbers, one file each. Imports plugins, style, names and labels; no other part of a report."""
+"""Figures of numbers, one file each, and the bars they share. Imports plugins, pictures, style and labels."""

@@ -1,1 +1,1 @@
-"""Figures of images, maps and points, one file each, and what they are drawn with. Imports what charts do."""
+"""Figures of images, maps and points, one file each, and what they share. Imports plugins and style."""
