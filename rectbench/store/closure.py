@@ -28,7 +28,7 @@ def source_closure(*modules: str, root: Path = PACKAGE) -> tuple[Path, ...]:
             path = _file_of(name, root)
             if path is not None and name not in found:
                 found[name] = path
-                queue += _imports_of(path, root.name)
+                queue += _imports_of(path, root)
     return tuple(sorted(found.values()))
 
 
@@ -46,12 +46,14 @@ def _file_of(module: str, root: Path) -> Path | None:
 
 
 @cache
-def _imports_of(path: Path, package: str) -> tuple[str, ...]:
-    """The modules of the package that a file imports; names that are no modules among them do no harm."""
-    return tuple(_imported(ast.parse(path.read_bytes()).body, package))
+def _imports_of(path: Path, root: Path) -> tuple[str, ...]:
+    """The modules of the package that a file imports."""
+    names = dict.fromkeys(_imported(ast.parse(path.read_bytes()).body, root.name))
+    return tuple(name for name in names if _file_of(name, root))
 
 
 def _imported(body: list[ast.stmt], package: str) -> Iterator[str]:
+    """The names that are imported of the package; those that are no modules among them."""
     for statement in body:
         if isinstance(statement, ast.ImportFrom):
             module = statement.module or ""
