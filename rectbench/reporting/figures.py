@@ -37,8 +37,8 @@ class PlacedDrawing:
     part: str
     """The part of the report that it belongs to, and the heading that it stands under there."""
     topic: str
-    code: str
-    """Digest of the code that makes the figure."""
+    made_by: str
+    """Digest of the code that makes the figure, and of the looks of the methods in it."""
 
     @property
     def digest(self) -> str:
@@ -47,7 +47,7 @@ class PlacedDrawing:
         # What answers for pictures is no part of the figure's own code.
         shared = code_digest("rectbench.reporting.figures", "rectbench.reporting.sources")
         drawn_with = versions("matplotlib")["matplotlib"]
-        return digest([self.name, self.drawing.dpi, made_from, self.code, shared, drawn_with])
+        return digest([self.name, self.drawing.dpi, made_from, self.made_by, shared, drawn_with])
 
     def path(self, extension: str) -> str:
         """Where the picture lies in the run's folder."""
@@ -65,9 +65,10 @@ def _drawings_of(part: Run, run: Run, sources: Sources) -> Iterator[PlacedDrawin
     loaded = [plugin.value for plugin in wanted.values() if isinstance(plugin, Plugin)]
     placed: dict[str, PlacedDrawing] = {}
     for asked, plugin in wanted.items():
-        topic, code = OTHER_TOPIC, ""
+        topic, made_by = OTHER_TOPIC, ""
         if isinstance(plugin, Plugin):
-            topic, code = plugin.value.topic, plugin.digest
+            topic = plugin.value.topic
+            made_by = digest([plugin.digest, {method: styles[method] for method in part.methods}])
             shown = without_set_apart(part, (figure for figure in loaded if figure is not plugin.value))
             drawings = _drawings(plugin, FigureData(shown, run, sources, styles)) if shown else []
         else:
@@ -77,7 +78,7 @@ def _drawings_of(part: Run, run: Run, sources: Sources) -> Iterator[PlacedDrawin
             if name in placed:
                 drawing = _failed(f"{asked} {name}", InvalidInput(f"two drawings are called {name}"))
                 name = named(part, drawing.stem)
-            placed[name] = PlacedDrawing(drawing, name, part.group, topic, code)
+            placed[name] = PlacedDrawing(drawing, name, part.group, topic, made_by)
     rigs = ("", *part.rigs)
     yield from sorted(
         placed.values(), key=lambda one: rigs.index(one.drawing.of if one.drawing.of in rigs else "")
@@ -125,11 +126,11 @@ def draw_changed(
         there = all((folder / placed.path(extension)).is_file() for extension in EXTENSIONS)
         error = ""
         try:
-            digest = placed.digest
-            if known.get(placed.name) != digest or not there:
+            now = placed.digest
+            if known.get(placed.name) != now or not there:
                 _draw(folder, placed)
                 there = True
-            digests[placed.name] = digest
+            digests[placed.name] = now
         except Exception as failure:  # a lost image must not cost the tables and the other figures
             error = " ".join(f"{type(failure).__name__}: {failure}".split())
         width = _width_inches(folder / placed.path("png"), placed.drawing.dpi) if there else PAGE_INCHES

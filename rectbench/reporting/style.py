@@ -84,7 +84,7 @@ def looks(methods: Sequence[str]) -> dict[str, Look]:
     the next free places, one after the other. Beyond the number of colours come hatches and other markers.
     """
     built_in = [p.name for p in registry(METHODS).plugins() if type(p.value).__module__.startswith(_BUILT_IN)]
-    own_place = dict(zip(built_in, range(len(built_in)), strict=True))
+    own_place = {method: place for place, method in enumerate(built_in)}
     taken: dict[int, str] = {}
     for method in sorted(dict.fromkeys(methods), key=lambda method: own_place.get(method, len(built_in))):
         free = (place for place in _places(own_place.get(method, len(built_in))) if place not in taken)
