@@ -34,6 +34,9 @@ from .matching import fundamental_matrix as fundamental_matrix
 from .matching import reconstruct as reconstruct
 from .matching import sampson_residuals as sampson_residuals
 from .matching import sift_matches as sift_matches
+from .plugins.figure import Drawing as Drawing
+from .plugins.figure import Figure as Figure
+from .plugins.figure import FigureData as FigureData
 from .plugins.homography import HomographyRectifier as HomographyRectifier
 from .plugins.homography import PinholeView as PinholeView
 from .plugins.rectifier import Options as Options

@@ -317,7 +317,7 @@ def run(
     The arguments are those of `runs.making.run`. Returns the rows of `results.parquet`.
     """
     from rectbench.progress import progress_for
-    from rectbench.reporting import write_report
+    from rectbench.reporting.report import write_report
     from rectbench.runs import making
 
     table = making.run(

@@ -48,6 +48,7 @@ def console() -> Console:
 def show_names(kind: str, verbose: bool) -> None:
     """The names of a kind with a line about each; below, the plugins that cannot be loaded."""
     from rectbench.experiments.spec import REPORTS
+    from rectbench.plugins.figure import FIGURES
     from rectbench.plugins.rectifier import METHODS
     from rectbench.plugins.scene import SCENES
     from rectbench.registry import Kind, registry
@@ -55,7 +56,8 @@ def show_names(kind: str, verbose: bool) -> None:
 
     screen, table = console(), _table(kind)
     broken: dict[str, str] = {}
-    kinds: dict[str, Kind[Any]] = {known.name: known for known in (METHODS, SCENES, REPORTS, FORMATS)}
+    known_kinds = (METHODS, SCENES, REPORTS, FIGURES, FORMATS)
+    kinds: dict[str, Kind[Any]] = {known.name: known for known in known_kinds}
     if kind in kinds:
         found = registry(kinds[kind])
         broken = found.broken

@@ -90,7 +90,7 @@ def report(folder: RunFolder) -> None:
     """Write the tables, figures and page of a run again."""
     from rectbench.cli import printing as terminal
     from rectbench.progress import progress_for
-    from rectbench.reporting import write_report
+    from rectbench.reporting.report import write_report
 
     write_report(folder, progress=progress_for(None))
     terminal.show_summary(folder)

@@ -16,6 +16,7 @@ from rectbench.experiments.spec import REPORTS, Report
 from rectbench.experiments.tasks import Cell, CellTask
 from rectbench.pairs.finding.photographs import Photographs
 from rectbench.pairs.spec import ESTIMATED, PairSpec
+from rectbench.plugins.figure import FIGURES, usual_figures
 from rectbench.plugins.fitting import checked_options
 from rectbench.plugins.rectifier import METHODS, Rectifier
 from rectbench.registry import Plugin, registry
@@ -133,7 +134,7 @@ def _tasks_of(
         part,
         pairs=_chosen_pairs(part, source, own, chosen),
         seeds=_chosen_seeds(part, own, chosen),
-        needs_images=part.needs_images or "images" in needs,
+        needs_images=part.needs_images or "images" in needs | _figure_needs(part),
         needs_truth=part.needs_truth or "matches" in needs,
     )
     for pair in source.specs(chosen_part):
@@ -178,6 +179,12 @@ def _chosen_names(chosen: Sequence[Any] | None, own: Sequence[Any]) -> list[Any]
     added = [name[1:] for name in chosen if isinstance(name, str) and name.startswith("+")]
     instead = [name for name in chosen if not (isinstance(name, str) and name.startswith("+"))]
     return [*(instead or (own if added else ())), *added]
+
+
+def _figure_needs(part: StatedPart) -> frozenset[str]:
+    """What the figures of a part need; raises UnknownName or InvalidInput for one that does not exist."""
+    names = usual_figures() if part.figures is None else part.figures
+    return frozenset().union(*(registry(FIGURES).get(name).value.needs for name in names))
 
 
 def _chosen_methods(part: StatedPart, own: OwnNames, chosen: Selection) -> list[str]:

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, model_validator
 
 from rectbench.experiments.claims import Claim
 from rectbench.experiments.pair_sources import (
@@ -20,6 +21,7 @@ from rectbench.experiments.pair_sources import (
     StatedPart,
 )
 from rectbench.pairs.spec import CALIBRATED, ESTIMATED
+from rectbench.registry import is_path
 from rectbench.registry.kind import Described, Kind
 
 Metric = Literal[
@@ -35,9 +37,16 @@ Metric = Literal[
 """Distortion at the grid alone; all of distortion, coverage and order; row error of the truth, of SIFT
 matches in the images, and of a calibration board's corners where they show one; depth from dense matching;
 the shape of the energy; times."""
-Figures = Literal["bars", "scatter", "pairs", "maps", "energy", "starts", "squares", "clouds", "timing"]
 Names = Annotated[tuple[str, ...], Field(min_length=1)]
 Slug = Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9-]*$")]
+
+
+def _found_from_anywhere(name: str) -> str:
+    return str(Path(name).resolve()) if is_path(name) else name
+
+
+FigureName = Annotated[str, AfterValidator(_found_from_anywhere)]
+"""A figure's name, or the absolute path of its file."""
 
 
 def _one_set_is_a_list_of_one(options: Any) -> Any:
@@ -50,7 +59,6 @@ OptionSets = Annotated[Mapping[str, tuple[dict[str, Any], ...]], BeforeValidator
 
 IMAGE_METRICS = frozenset({"row_error_features", "row_error_board", "reconstruction"})
 TRUTH_METRICS = frozenset({"row_error", "reconstruction"})
-IMAGE_FIGURES = frozenset({"pairs", "clouds"})
 
 
 class Group(BaseModel):
@@ -68,7 +76,7 @@ class Group(BaseModel):
     methods: Names = Field(description="Rectifiers, by name or path.")
     options: OptionSets = Field(default_factory=dict, description="As a report's.")
     metrics: tuple[Metric, ...] | None = Field(default=None, description="In the place of the report's.")
-    figures: tuple[Figures, ...] | None = Field(default=None, description="In the place of the report's.")
+    figures: tuple[FigureName, ...] | None = Field(default=None, description="In the place of the report's.")
     seeds: Annotated[tuple[int, ...], Field(min_length=1)] | None = Field(
         default=None, description="In the place of the report's."
     )
@@ -151,7 +159,7 @@ class Report(Rendering, GivenMatches, CellLimits):
         default=("geometry", "row_error", "timing"),
         description="What is measured. Nothing is rendered or computed that none of these asks for.",
     )
-    figures: tuple[Figures, ...] | None = Field(
+    figures: tuple[FigureName, ...] | None = Field(
         default=None, description="Figures to draw; None draws the usual ones."
     )
     claims: tuple[Claim, ...] = Field(default=(), description="What is claimed somewhere, to be judged.")
@@ -191,10 +199,7 @@ class Report(Rendering, GivenMatches, CellLimits):
             metrics=metrics,
             figures=figures,
             rendering=Rendering(image_width=width, quality=self.quality, spp=self.spp),
-            needs_images=ESTIMATED in self.poses
-            or not IMAGE_METRICS.isdisjoint(metrics)
-            or figures is None
-            or not IMAGE_FIGURES.isdisjoint(figures),
+            needs_images=ESTIMATED in self.poses or not IMAGE_METRICS.isdisjoint(metrics),
             needs_truth=not TRUTH_METRICS.isdisjoint(metrics),
             is_open=group.is_open,
             alone=group.alone,
@@ -246,6 +251,6 @@ REPORTS: Kind[Report] = Kind(
     name="reports",
     singular="report",
     expected="a rectbench.Report",
-    package="rectbench_reports",
+    packages=("rectbench_reports",),
     described=_described,
 )

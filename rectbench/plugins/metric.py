@@ -214,7 +214,7 @@ METRICS: Kind[Metric] = Kind(
     name="metrics",
     singular="metric",
     expected="a subclass of rectbench.Metric with a name, a topic and columns",
-    package="rectbench.metrics",
+    packages=("rectbench.metrics",),
     described=_described,
     is_shared=True,
 )

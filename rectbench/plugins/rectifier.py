@@ -202,6 +202,6 @@ METHODS: Kind[Rectifier] = Kind(
     name="methods",
     singular="method",
     expected="a subclass of rectbench.Rectifier with a name",
-    package="rectbench_methods",
+    packages=("rectbench_methods",),
     described=_described,
 )

@@ -89,7 +89,7 @@ SCENES: Kind[Scene] = Kind(
     name="scenes",
     singular="scene",
     expected="a function decorated with @rectbench.scene(name)",
-    package="rectbench_scenes",
+    packages=("rectbench_scenes",),
     described=_described,
     by_suffix={".xml": _xml_scene},
 )

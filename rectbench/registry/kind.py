@@ -27,8 +27,8 @@ class Kind(Generic[T]):
     name : plural, as in `rectbench list methods` and the entry points' group `rectbench.methods`.
     singular : as in errors.
     expected : what a plugin's file has to hold; ends a sentence of an error.
-    package : the package whose files hold the built-in ones, those of its sub-packages included; a file
-        that holds none is no fault there where `is_shared`.
+    packages : those whose files hold the built-in ones, those of their sub-packages included; a file that
+        holds none is no fault there where `is_shared`.
     described : the plugin that a value of a module is, None for any other value. Raises InvalidInput for one
         that is meant as a plugin and is broken.
     by_suffix : how a file of another suffix than `.py` is read, such as a scene in Mitsuba's `.xml`: the
@@ -40,7 +40,7 @@ class Kind(Generic[T]):
     name: str
     singular: str
     expected: str
-    package: str
+    packages: tuple[str, ...]
     described: Callable[[Any], Described[T] | None]
     by_suffix: Mapping[str, Callable[[Path], tuple[Described[T], list[Path]]]] = field(default_factory=dict)
     is_shared: bool = False

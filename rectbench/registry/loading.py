@@ -1,8 +1,8 @@
 """The one loader of plugins, wherever they come from.
 
-Built-ins are the files of a kind's package and its sub-packages; installed packages announce theirs as entry
-points of the group `rectbench.<kind>`; and wherever a name is accepted, so is the path of a file. All of them
-see the same public names and get the same treatment.
+Built-ins are the files of a kind's packages and their sub-packages; installed packages announce theirs as
+entry points of the group `rectbench.<kind>`; and wherever a name is accepted, so is the path of a file. All
+of them see the same public names and get the same treatment.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from typing import Any, Generic, TypeVar
 from rectbench.errors import InvalidInput, UnknownName
 from rectbench.registry.kind import Described, Kind, Plugin
 from rectbench.registry.sources import plugin_digest
-from rectbench.store.keys import digest, file_digest
+from rectbench.store.keys import code_digest, digest, file_digest
 
 T = TypeVar("T")
 
@@ -114,8 +114,9 @@ def forget_plugins() -> None:
 @cache
 def _loaded(kind: Kind[Any]) -> Registry[Any]:
     found: Registry[Any] = Registry(kind)
-    for module, path in _built_in_files(kind.package):
-        found.add(str(path), lambda module=module, path=path: _built_in(kind, module, path))  # type: ignore[misc]
+    for package in kind.packages:
+        for module, path in _built_in_files(package):
+            found.add(str(path), lambda module=module, path=path: _built_in(kind, module, path))  # type: ignore[misc]
     for point in importlib.metadata.entry_points(group=f"rectbench.{kind.name}"):
         place = f"{point.group}:{point.name} = {point.value}"
         found.add(place, lambda point=point: _announced(kind, point))  # type: ignore[misc]
@@ -132,9 +133,14 @@ def _built_in_files(package: str) -> Iterator[tuple[str, Path]]:
                 yield ".".join((package, *names)), path
 
 
+def _built_in_digest(module: str, path: Path) -> str:
+    """One of rectbench's own modules sees more of it than the public names."""
+    return code_digest(module) if module.startswith("rectbench.") else plugin_digest(path)
+
+
 def _built_in(kind: Kind[T], module: str, path: Path) -> list[Plugin[T]]:
     loaded = importlib.import_module(module)
-    plugins = _plugins_in(kind, loaded, path, plugin_digest(path) if kind.is_keyed else "")
+    plugins = _plugins_in(kind, loaded, path, _built_in_digest(module, path) if kind.is_keyed else "")
     return plugins if kind.is_shared else _require(kind, plugins)
 
 

@@ -1,85 +1,140 @@
-"""A figure to be, and drawing only those that changed."""
+"""The figures of a run: which drawings there are, and drawing only those that changed."""
 
 from __future__ import annotations
 
-import hashlib
-import importlib.metadata
 import json
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
-from functools import cache
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
+from rectbench.errors import InvalidInput, InvalidResult
+from rectbench.plugins.figure import Drawing, Figure, FigureData, Sources
 from rectbench.progress import Advance
-from rectbench.reporting.style import PAGE_INCHES, STYLE, encode
-from rectbench.store.keys import code_digest
+from rectbench.registry import Plugin
+from rectbench.reporting.asked import wanted_figures, without_set_apart
+from rectbench.reporting.names import named, slug
+from rectbench.reporting.style import PAGE_INCHES, STYLE, encode, looks
+from rectbench.runs.run import Run
+from rectbench.store.keys import code_digest, digest, versions
 from rectbench.writing import write_atomically
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+    import matplotlib.figure
 
 EXTENSIONS = ("pdf", "svg", "png")
+OTHER_TOPIC = "Charts"
+"""Where a figure stands that cannot be loaded, and so has no topic."""
 
 
 @dataclass(frozen=True)
-class Plan:
-    """A figure to be: its words, what it is made from, how it is drawn."""
+class PlacedDrawing:
+    """A drawing and its place in the report."""
 
+    drawing: Drawing
     name: str
-    kind: str
-    title: str
-    caption: str
-    made_from: Any = field(repr=False)
-    draw: Callable[[], Figure] = field(repr=False)
-    dpi: int = 160
-    shown_as: str = "svg"
-    part: str = ""
-    """The part of the report it belongs to."""
+    """What its files are called."""
+    part: str
+    """The part of the report that it belongs to, and the heading that it stands under there."""
+    topic: str
+    made_by: str
+    """Digest of the code that makes the figure, and of the looks of the methods in it."""
 
     @property
     def digest(self) -> str:
         """Changes with whatever changes the picture."""
-        text = json.dumps([self.name, self.dpi, self.made_from, _code_digest()], default=repr, sort_keys=True)
-        return hashlib.sha256(text.encode()).hexdigest()
+        made_from = json.dumps(self.drawing.made_from, default=repr, sort_keys=True)
+        # What answers for pictures is no part of the figure's own code.
+        shared = code_digest("rectbench.reporting.figures", "rectbench.reporting.sources")
+        drawn_with = versions("matplotlib")["matplotlib"]
+        return digest([self.name, self.drawing.dpi, made_from, self.made_by, shared, drawn_with])
 
     def path(self, extension: str) -> str:
-        """Where the figure lies in the run's folder."""
+        """Where the picture lies in the run's folder."""
         return f"figures/{self.name}.{extension}"
+
+
+def placed_drawings(run: Run, sources: Sources) -> list[PlacedDrawing]:
+    """The drawings of each part of the run that it asks for and has data for."""
+    return [placed for part in run.parts for placed in _drawings_of(part, run, sources)]
+
+
+def _drawings_of(part: Run, run: Run, sources: Sources) -> Iterator[PlacedDrawing]:
+    """A part's drawings; those of one rig stand together, so that its pair is found once for them."""
+    wanted, styles = wanted_figures(part), looks(run.methods)
+    loaded = [plugin.value for plugin in wanted.values() if isinstance(plugin, Plugin)]
+    placed: dict[str, PlacedDrawing] = {}
+    for asked, plugin in wanted.items():
+        topic, made_by = OTHER_TOPIC, ""
+        if isinstance(plugin, Plugin):
+            topic = plugin.value.topic
+            made_by = digest([plugin.digest, {method: styles[method] for method in part.methods}])
+            shown = without_set_apart(part, (figure for figure in loaded if figure is not plugin.value))
+            drawings = _drawings(plugin, FigureData(shown, run, sources, styles)) if shown else []
+        else:
+            drawings = [_failed(asked, plugin)]
+        for drawing in drawings:
+            name = named(part, drawing.stem, drawing.of)
+            if name in placed:
+                drawing = _failed(f"{asked} {name}", InvalidInput(f"two drawings are called {name}"))
+                name = named(part, drawing.stem)
+            placed[name] = PlacedDrawing(drawing, name, part.group, topic, made_by)
+    rigs = ("", *part.rigs)
+    yield from sorted(
+        placed.values(), key=lambda one: rigs.index(one.drawing.of if one.drawing.of in rigs else "")
+    )
+
+
+def _drawings(plugin: Plugin[Figure], given: FigureData) -> list[Drawing]:
+    """The figure's drawings, or one that tells what it raised instead: a plugin may raise anything."""
+    try:
+        drawings = list(plugin.value.drawings(given))
+        if strange := [one for one in drawings if not isinstance(one, Drawing)]:
+            raise InvalidResult(f"{plugin.name} yields a {type(strange[0]).__name__}; expected Drawings")
+    except Exception as error:
+        return [_failed(plugin.name, error)]
+    return drawings
+
+
+def _failed(title: str, error: Exception) -> Drawing:
+    def draw() -> matplotlib.figure.Figure:
+        raise error
+
+    return Drawing(slug(title), title, "", str(error), draw)
 
 
 @dataclass(frozen=True)
 class Drawn:
     """A figure on the page: drawn, or not and why, or left there by an earlier report of the folder."""
 
-    plan: Plan
+    placed: PlacedDrawing
     error: str = ""
     there: bool = True
     width_inches: float = PAGE_INCHES
 
 
 def draw_changed(
-    folder: Path, plans: list[Plan], known: Mapping[str, str], advance: Advance
+    folder: Path, drawings: list[PlacedDrawing], known: Mapping[str, str], advance: Advance
 ) -> tuple[list[Drawn], dict[str, str]]:
-    """Draw the plans whose digest is not the `known` one, or whose files are gone.
+    """Draw those whose digest is not the `known` one, or whose files are gone.
 
     Returns what the page shows and the digests of what is drawn now. Where a figure cannot be drawn,
     an earlier one stays, and it is tried again next time. `advance` is called after each.
     """
     drawn, digests = [], {}
-    for plan in plans:
-        digest, error = plan.digest, ""
-        there = all((folder / plan.path(extension)).is_file() for extension in EXTENSIONS)
-        if known.get(plan.name) != digest or not there:
-            try:
-                _draw(folder, plan)
+    for placed in drawings:
+        there = all((folder / placed.path(extension)).is_file() for extension in EXTENSIONS)
+        error = ""
+        try:
+            now = placed.digest
+            if known.get(placed.name) != now or not there:
+                _draw(folder, placed)
                 there = True
-            except Exception as failure:  # a lost image must not cost the tables and the other figures
-                error = " ".join(f"{type(failure).__name__}: {failure}".split())
-        if not error:
-            digests[plan.name] = digest
-        width = _width_inches(folder / plan.path("png"), plan.dpi) if there else PAGE_INCHES
-        drawn.append(Drawn(plan, error, there, width))
+            digests[placed.name] = now
+        except Exception as failure:  # a lost image must not cost the tables and the other figures
+            error = " ".join(f"{type(failure).__name__}: {failure}".split())
+        width = _width_inches(folder / placed.path("png"), placed.drawing.dpi) if there else PAGE_INCHES
+        drawn.append(Drawn(placed, error, there, width))
         advance()
     return drawn, digests
 
@@ -91,23 +146,15 @@ def _width_inches(png: Path, dpi: int) -> float:
     return int.from_bytes(head[16:20], "big") / dpi
 
 
-def _draw(folder: Path, plan: Plan) -> None:
+def _draw(folder: Path, placed: PlacedDrawing) -> None:
     import matplotlib
 
     with matplotlib.rc_context():
         matplotlib.rcdefaults()  # a user's own matplotlibrc changes nothing here
         matplotlib.rcParams.update(STYLE)
-        figure = plan.draw()
+        figure = placed.drawing.draw()
         if figure.get_layout_engine() is not None:
             figure.draw_without_rendering()
             figure.set_layout_engine(None)  # laid out once, not again for each file
         for extension in EXTENSIONS:
-            write_atomically(folder / plan.path(extension), encode(figure, extension, plan.dpi))
-
-
-@cache
-def _code_digest() -> str:
-    """The code that draws and that computes for pictures alone, and the version of matplotlib."""
-    digest = hashlib.sha256(importlib.metadata.version("matplotlib").encode())
-    digest.update(code_digest("rectbench.reporting").encode())
-    return digest.hexdigest()
+            write_atomically(folder / placed.path(extension), encode(figure, extension, placed.drawing.dpi))

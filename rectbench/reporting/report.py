@@ -6,11 +6,11 @@ import json
 from pathlib import Path
 from typing import Any
 
+from rectbench.plugins.figure import Sources
 from rectbench.progress import Progress
-from rectbench.reporting.figure_plans import planned_figures
-from rectbench.reporting.figures import EXTENSIONS, draw_changed
+from rectbench.reporting.figures import EXTENSIONS, draw_changed, placed_drawings
 from rectbench.reporting.page.page import render_page
-from rectbench.reporting.sources import Sources, sources_of
+from rectbench.reporting.sources import sources_of
 from rectbench.reporting.tables.part_tables import all_tables
 from rectbench.reporting.tables.table import SPELLINGS, Table
 from rectbench.runs.run import read_run
@@ -40,10 +40,10 @@ def write_report(run_dir: Path, *, progress: Progress | None = None, sources: So
     manifest = _read_manifest(run_dir)
     tables = list(all_tables(run))
     written = [path for table in tables for path in _write_table(run_dir, table)]
-    plans = planned_figures(run, sources or sources_of(run))
-    with (progress or Progress()).stage("figures", len(plans)) as advance:
-        drawn, digests = draw_changed(run_dir, plans, manifest["figures"], advance)
-    written += [figure.plan.path(e) for figure in drawn if figure.there for e in EXTENSIONS]
+    drawings = placed_drawings(run, sources or sources_of(run))
+    with (progress or Progress()).stage("figures", len(drawings)) as advance:
+        drawn, digests = draw_changed(run_dir, drawings, manifest["figures"], advance)
+    written += [figure.placed.path(e) for figure in drawn if figure.there for e in EXTENSIONS]
     _remove_leftovers(run_dir, set(manifest["files"]) - set(written))
     write_atomically(run_dir / "index.html", render_page(run, tables, drawn))
     fresh = {"figures": digests, "files": sorted(written)}

@@ -3,13 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal, Protocol, TypeVar
-
-import numpy as np
-from numpy.typing import NDArray
 
 from rectbench.errors import InvalidInput, InvalidResult, RectbenchError
 from rectbench.experiments.execution.cells import cell_inputs, problem_of
@@ -17,64 +11,18 @@ from rectbench.experiments.tasks import Cell, CellTask
 from rectbench.metrics import Jacobians, distortion, distortion_of
 from rectbench.pairs.opening import open_pair
 from rectbench.pairs.pair import Pair
+from rectbench.plugins.figure import Cloud, Result, Sources
 from rectbench.plugins.fitting import checked_options, fit
 from rectbench.plugins.rectifier import METHODS
 from rectbench.registry import registry
-from rectbench.rigs import Rig
 from rectbench.runs.record import RUN_FILE
-from rectbench.runs.rows import Row
 from rectbench.runs.run import Run
 from rectbench.store.keys import digest
 from rectbench.store.store import Store
-from rectbench.types import FloatArray
 from rectbench.warps import Rectification
 
-Side = Literal["left", "right"]
-Made = TypeVar("Made")
 _FINGERPRINT = "distortion_native"
 _SAME_FIT = 1e-3
-
-
-class Cloud(Protocol):
-    """Points in space, one for each pixel of an image."""
-
-    @property
-    def points(self) -> FloatArray:
-        """[H, W, 3] in the left camera's frame, metres; NaN where there is none."""
-
-    @property
-    def colours(self) -> NDArray[np.uint8]:
-        """[H, W, 3] RGB."""
-
-
-@dataclass(frozen=True)
-class Sources:
-    """How to get, for a cell, its images and what is known of them, its rectification, its distortion.
-
-    Parameters
-    ----------
-    pair : the images of a cell and what is known of them.
-    rectification : the cell's rectification, fitted again.
-    distortion : native distortion [N] of a rectification at pixels [N, 2] of one side of a rig.
-    reconstruction : the points that dense matching on the cell's rectified pair gives.
-    version : changes with whatever changes those answers while the cell's row stays the same.
-    """
-
-    pair: Callable[[Row], Pair]
-    rectification: Callable[[Row], Rectification]
-    distortion: Callable[[Rectification, Rig, Side, FloatArray], FloatArray]
-    reconstruction: Callable[[Row], Cloud]
-    version: Callable[[Row], str] = lambda result: ""
-
-
-def attempted(result: Row, make: Callable[[], Made]) -> Made | str:
-    """What `make` gives of a cell, or the reason why its picture is missing."""
-    if not result.ok:
-        return f"{result.status}: {result.reason}" if result.reason else result.status
-    try:
-        return make()
-    except Exception as error:  # a plugin's code runs here, and one picture is no reason to lose a report
-        return f"no picture: {error}" if isinstance(error, RectbenchError) else f"no picture: {error!r}"
 
 
 def sources_of(run: Run) -> Sources:
@@ -102,33 +50,33 @@ class _Recalled:
     def _tasks(self) -> dict[Cell, CellTask]:
         return {task.cell: task for task in self._run.record.cells}
 
-    def _task(self, result: Row) -> CellTask:
+    def _task(self, result: Result) -> CellTask:
         task = self._tasks.get(result.cell)
         if task is None:
             file = self._run.folder / RUN_FILE
             raise InvalidInput(f"{file} does not plan {result.method} on {result.pair}")
         return task
 
-    def pair(self, result: Row) -> Pair:
+    def pair(self, result: Result) -> Pair:
         spec = self._task(result).pair
         if self._pair is None or self._pair.spec != spec:
             self._pair = open_pair(spec, self._store)
         return self._pair
 
-    def rectification(self, result: Row) -> Rectification:
+    def rectification(self, result: Result) -> Rectification:
         if result.cell not in self._fitted:
             rectification = _fitted_again(self._task(result), self.pair(result))
             _require_same(rectification, result)
             self._fitted[result.cell] = rectification
         return self._fitted[result.cell]
 
-    def reconstruction(self, result: Row) -> Cloud:
+    def reconstruction(self, result: Result) -> Cloud:
         from rectbench.matching.dense.reconstruction import reconstruct
 
         images = self.pair(result).images
         return reconstruct(self.rectification(result), images.left, images.right)
 
-    def version(self, result: Row) -> str:
+    def version(self, result: Result) -> str:
         try:
             pair = self.pair(result)
             return digest([cell_inputs(self._task(result), pair), pair.image_inputs])
@@ -141,7 +89,7 @@ def _fitted_again(task: CellTask, pair: Pair) -> Rectification:
     return fit(method, problem_of(task, pair), checked_options(method, task.options))
 
 
-def _require_same(rectification: Rectification, result: Row) -> None:
+def _require_same(rectification: Rectification, result: Result) -> None:
     """Raise InvalidResult where the new fit is not the one the run measured: a picture must not lie."""
     measured = result.metrics.get(_FINGERPRINT)
     if measured is None:

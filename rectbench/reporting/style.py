@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-import hashlib
 import io
-from collections.abc import Sequence
+import itertools
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
+from rectbench.plugins.figure import Look
+from rectbench.plugins.rectifier import METHODS
+from rectbench.registry import registry
 from rectbench.reporting.tables.numbers import decade
 
 if TYPE_CHECKING:
@@ -56,6 +59,7 @@ STYLE: dict[Any, Any] = {
     "figure.constrained_layout.wspace": 0.02,
     "figure.constrained_layout.hspace": 0.02,
     "savefig.facecolor": PAPER,
+    "hatch.linewidth": 0.4,
     "text.parse_math": False,
     "pdf.fonttype": 42,
     "ps.fonttype": 42,
@@ -63,41 +67,42 @@ STYLE: dict[Any, Any] = {
     "svg.hashsalt": "rectbench",
 }
 
-_FIXED = {
-    "conventional": ("#56b4e9", "s"),
-    "abraham": ("#0072b2", "o"),
-    "hartley": ("#e69f00", "^"),
-    "fusiello": ("#cc79a7", "v"),
-    "local-homography": ("#d55e00", "D"),
-}
-_SPARE = (
-    ("#009e73", "P"),
-    ("#332288", "X"),
-    ("#999933", "<"),
-    ("#882255", ">"),
-    ("#666666", "h"),
-    ("#44aa99", "p"),
-    ("#ddaa33", "*"),
-    ("#117733", "d"),
+_BUILT_IN = METHODS.packages
+_COLOURS = (
+    *("#0072b2", "#56b4e9", "#cc79a7", "#e69f00", "#d55e00", "#009e73", "#332288"),
+    *("#999933", "#882255", "#666666", "#44aa99", "#ddaa33", "#117733"),
 )
-# Okabe & Ito's palette, then darker ones of Tol's: told apart under all common colour blindness.
+"""Okabe & Ito's palette, then darker ones of Tol's: told apart under all common colour blindness."""
+_MARKERS = ("o", "s", "v", "^", "D", "P", "X", "<", ">", "h", "p", "*", "d")
+_HATCHES = ("", "//////", "......", "xxxxxx")
 
 
-def looks(methods: Sequence[str]) -> dict[str, tuple[str, str]]:
-    """Colour and marker of each method: fixed for the built-in ones, steered by the name for others.
+def looks(methods: Sequence[str]) -> dict[str, Look]:
+    """The look of each method of a run, in the run's order.
 
-    A name's own hash picks its place among the spare looks, so that a method keeps its colour from
-    one run to the next unless two names want the same.
+    Built-in methods have the places of their sorted names, and so the same look in all runs; others take
+    the next free places, one after the other. Beyond the number of colours come hatches and other markers.
     """
-    chosen: dict[str, tuple[str, str]] = {}
-    for method in sorted(set(methods)):
-        if method in _FIXED:
-            chosen[method] = _FIXED[method]
-            continue
-        start = int.from_bytes(hashlib.sha256(method.encode()).digest()[:4], "big")
-        places = [_SPARE[(start + i) % len(_SPARE)] for i in range(len(_SPARE))]
-        chosen[method] = next((look for look in places if look not in chosen.values()), places[0])
-    return chosen
+    built_in = [p.name for p in registry(METHODS).plugins() if type(p.value).__module__.startswith(_BUILT_IN)]
+    own_place = {method: place for place, method in enumerate(built_in)}
+    taken: dict[int, str] = {}
+    for method in sorted(dict.fromkeys(methods), key=lambda method: own_place.get(method, len(built_in))):
+        free = (place for place in _places(own_place.get(method, len(built_in))) if place not in taken)
+        taken[next(free)] = method
+    found = {method: _look(place) for place, method in taken.items()}
+    return {method: found[method] for method in methods}
+
+
+def _places(first: int) -> Iterator[int]:
+    """All places, from `first` on round the colours, then round them again."""
+    count = len(_COLOURS)
+    return (lap * count + (first + i) % count for lap in itertools.count() for i in range(count))
+
+
+def _look(place: int) -> Look:
+    lap, colour = divmod(place, len(_COLOURS))
+    marker = _MARKERS[(colour + 4 * lap) % len(_MARKERS)]
+    return Look(_COLOURS[colour], marker, _HATCHES[lap % len(_HATCHES)])
 
 
 def plain_log_ticks(axis: Axis) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -17,8 +17,6 @@ from rectbench.runs.record import LEADING, PARQUET, RunRecord, read_record
 from rectbench.runs.rows import Row, distinct, read_rows
 
 EXACT_POSE = "exact"
-Result = Row
-"""The name by which charts and pictures know a row."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,6 +86,11 @@ class Run:
     def noisy_poses(self) -> tuple[str, ...]:
         """The poses whose row errors tell methods apart; the exact one if there is no other."""
         return tuple(pose for pose in self.poses if pose != EXACT_POSE) or self.poses
+
+    @property
+    def stated_seconds(self) -> Mapping[str, float]:
+        """Times that somebody else stated, by stage: `pose`, `fit`, `warp`."""
+        return {str(stage): seconds for stage, seconds in self.record.spec.stated_seconds.items()}
 
     @property
     def failures(self) -> tuple[Row, ...]:

@@ -16,7 +16,7 @@ from scipy.spatial.transform import Rotation
 import rectbench as rb
 from rectbench.experiments.planning import make_plan
 from rectbench.experiments.tasks import CellTask
-from rectbench.reporting import write_report
+from rectbench.reporting.report import write_report
 from rectbench.runs.gating import accept, gate
 from rectbench.runs.making import run
 from rectbench.store.store import STORE_VARIABLE

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from rectbench.reporting import Sources
+from rectbench.plugins.figure import Sources
 from tests.reporting.runs import fake_sources, save_run
 
 

@@ -16,8 +16,8 @@ from rectbench.experiments.planning import Selection
 from rectbench.experiments.spec import Report
 from rectbench.images.stereo_pair import StereoPair
 from rectbench.metrics import distortion
+from rectbench.plugins.figure import Sources
 from rectbench.rendering.truth import Truth
-from rectbench.reporting import Sources
 from rectbench.rigs import Rig
 from rectbench.runs.record import VERSION, RunRecord, write_run
 from rectbench.types import Matches

@@ -11,21 +11,30 @@ import pytest
 import rectbench as rb
 from rectbench.errors import Unsupported
 from rectbench.metrics.catalogue import PROTOCOLS, STAGES
-from rectbench.reporting import Sources
-from rectbench.reporting.charts.bars import draw_bars, pair_chart, stage_chart
-from rectbench.reporting.charts.energy_curves import draw_energy, shape_of
+from rectbench.plugins.figure import FigureData, Sources
+from rectbench.reporting.charts.bars import pair_chart
+from rectbench.reporting.charts.energy import Energy, shape_of
+from rectbench.reporting.charts.grouped_bars import draw_bars
 from rectbench.reporting.charts.squares import mapped_cells, source_squares
-from rectbench.reporting.pictures.clouds import SIZE, draw_clouds
-from rectbench.reporting.pictures.distortion_maps import BEYOND, draw_distortion_maps
-from rectbench.reporting.pictures.rectified import draw_rectified
-from rectbench.reporting.pictures.views import BACKGROUND, View, looking_at, patches_of, splat, two_views
-from rectbench.runs.run import read_run
-from tests.reporting.runs import fake_pair, fake_rectification, fake_rig, make_row, quick_rows
+from rectbench.reporting.charts.timing import stage_chart
+from rectbench.reporting.pictures.clouds import SIZE, Clouds
+from rectbench.reporting.pictures.maps import BEYOND, DistortionMaps
+from rectbench.reporting.pictures.pairs import RectifiedPairs
+from rectbench.reporting.pictures.views import BACKGROUND, View, looking_at, painted, patches_of, two_views
+from rectbench.reporting.style import looks
+from rectbench.runs.run import Run, read_run
+from tests.reporting.runs import METHODS, fake_pair, fake_rectification, fake_rig, make_row, quick_rows
 
 WriteRun = Callable[..., Path]
 RIG = fake_rig(160)
-RED, BLUE = (200, 0, 0), (0, 0, 200)
+LOOKS = looks(tuple(METHODS))
+RED, BLUE = np.array([(200, 0, 0), (0, 0, 200)], np.uint8)
 AHEAD = looking_at(np.zeros(3), np.array([0.0, 0.0, 1.0]))
+
+
+def given(run: Run, sources: Sources) -> FigureData:
+    """What a figure of the whole run is made from."""
+    return FigureData(run, run, sources, looks(run.methods))
 
 
 def spot(where: Any) -> tuple[float, float]:
@@ -34,11 +43,13 @@ def spot(where: Any) -> tuple[float, float]:
     return float(u.mean()), float(v.mean())
 
 
-def dots(points: Any, colours: Any, view: View, size: tuple[int, int]) -> Any:
-    """A picture of single points: a row of an image, with gaps."""
-    row = np.full((1, 2 * len(points), 3), np.nan)
-    row[0, ::2] = points
-    return splat(patches_of(row, np.repeat(np.array([colours], np.uint8), 2, axis=1)), view, size)
+def tiles(points: Any, colours: Any, view: View, size: tuple[int, int]) -> Any:
+    """A picture of squares of 10 cm about points: two by two pixels of an image each, with gaps."""
+    image = np.full((2, 3 * len(points), 3), np.nan)
+    for column, across in ((0, -0.05), (1, 0.05)):
+        for row, down in ((0, -0.05), (1, 0.05)):
+            image[row, column::3] = points + np.array([across, down, 0.0])
+    return painted(patches_of(image, np.repeat([colours], 3, axis=1).repeat(2, axis=0)), view, size)
 
 
 def wall(across: int, nearest: float, farthest: float) -> tuple[Any, Any]:
@@ -48,22 +59,22 @@ def wall(across: int, nearest: float, farthest: float) -> tuple[Any, Any]:
     return np.stack([u, v, np.ones_like(u)], axis=-1) * depth[..., None], np.zeros((*u.shape, 3), np.uint8)
 
 
-def test_the_nearer_point_hides_the_farther_one() -> None:
+def test_the_nearer_surface_hides_the_farther_one() -> None:
     points = np.array([[0.0, 0.0, 2.0], [0.0, 0.0, 5.0]])
     for order in ([0, 1], [1, 0]):
-        picture = dots(points[order], np.array([RED, BLUE])[order], AHEAD, (41, 31))
-        assert (picture[..., 0] > picture[..., 2]).sum() == 1
+        picture = tiles(points[order], np.array([RED, BLUE])[order], AHEAD, (41, 31))
+        assert (picture[..., 0] > picture[..., 2]).any()
         assert not (picture[..., 2] > picture[..., 0]).any()
 
 
 def test_what_is_behind_the_eye_or_no_number_is_not_drawn() -> None:
     points = np.array([[0.0, 0.0, -2.0], [np.nan, 0.0, 1.0], [0.0, 0.0, 0.0]])
-    assert (dots(points, np.zeros((3, 3)), AHEAD, (41, 31)) == BACKGROUND).all()
+    assert (tiles(points, np.zeros((3, 3), np.uint8), AHEAD, (41, 31)) == BACKGROUND).all()
 
 
 def test_a_view_keeps_right_and_down() -> None:
     points = np.array([[1.0, 0.0, 4.0], [0.0, 0.5, 4.0]])
-    picture = dots(points, [RED, BLUE], AHEAD, (80, 60)).astype(int)
+    picture = tiles(points, [RED, BLUE], AHEAD, (80, 60)).astype(int)
     assert spot(picture[..., 0] - picture[..., 2] > 50) == pytest.approx((60, 30), abs=1)
     assert spot(picture[..., 2] - picture[..., 0] > 50) == pytest.approx((40, 40), abs=1)
 
@@ -74,14 +85,14 @@ def test_a_slanted_surface_is_closed_from_anywhere(across: int, eye: tuple[float
     points, colours = wall(across, 3.0, 9.0)
     middle = points[across // 4, across // 2]
     view = replace(looking_at(np.array(eye), middle), width=0.2)
-    assert (splat(patches_of(points, colours), view, (120, 80)) == 0).all()
+    assert (painted(patches_of(points, colours), view, (120, 80)) == 0).all()
 
 
 def test_two_surfaces_are_not_joined() -> None:
     points, colours = wall(200, 2.0, 2.0)
     points[:, 100:] *= 2
     view = replace(looking_at(np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 3.0])), width=0.1)
-    assert (splat(patches_of(points, colours), view, (60, 40)) == BACKGROUND).all()
+    assert (painted(patches_of(points, colours), view, (60, 40)) == BACKGROUND).all()
 
 
 def test_views_show_most_of_what_both_cameras_see() -> None:
@@ -91,7 +102,7 @@ def test_views_show_most_of_what_both_cameras_see() -> None:
         np.where(seen[..., None], truth.points_left, np.nan), np.zeros((*seen.shape, 3), np.uint8)
     )
     for view in two_views(truth.points_left[seen], SIZE):
-        assert (splat(patches, view, SIZE) == 0).all(axis=-1).mean() > 0.3
+        assert (painted(patches, view, SIZE) == 0).all(axis=-1).mean() > 0.3
 
 
 def test_the_view_from_above_looks_through_the_ceiling() -> None:
@@ -100,7 +111,7 @@ def test_the_view_from_above_looks_through_the_ceiling() -> None:
     points = np.concatenate([floor, ceiling])
     colours = np.repeat(np.array([[RED], [BLUE]], np.uint8), 90, axis=0).repeat(90, axis=1)
     _, above = two_views(points.reshape(-1, 3), (80, 60))
-    picture = splat(patches_of(points, colours), above, (80, 60))
+    picture = painted(patches_of(points, colours), above, (80, 60))
     assert not (picture == BLUE).all(axis=-1).any()
     assert (picture == RED).all(axis=-1).mean() > 0.3
 
@@ -141,14 +152,14 @@ def test_the_shape_of_an_energy_holds_its_fit_in_the_middle() -> None:
 def test_methods_without_cubics_have_no_energy_to_show(write_run: WriteRun, sources: Sources) -> None:
     run = read_run(write_run([make_row("street", "t265", "exact", "abraham")]))
     with pytest.raises(Unsupported, match="abraham has no cubics"):
-        draw_energy(sources, run.results)
+        Energy().draw(run.results, given(run, sources))
     run = read_run(write_run([make_row("street", "t265", "exact", "local-homography")]))
-    assert len(draw_energy(sources, run.results).axes) == 4
+    assert len(Energy().draw(run.results, given(run, sources)).axes) == 4
 
 
 def test_marks_are_whole_or_not_there(write_run: WriteRun, sources: Sources) -> None:
     run = read_run(write_run([make_row("street", "t265", "exact", "conventional")]))
-    for ax in draw_rectified(sources, run.results, run.methods).axes:
+    for ax in RectifiedPairs().draw(run.results, given(run, sources)).axes:
         rings = [line for line in ax.lines if line.get_marker() == "o"]
         assert rings
         assert len(ax.patches) % 2 == 0  # a box in each image
@@ -159,7 +170,7 @@ def test_marks_are_whole_or_not_there(write_run: WriteRun, sources: Sources) -> 
 
 def test_boxes_are_equally_large_and_level_on_a_rectified_pair(write_run: WriteRun, sources: Sources) -> None:
     run = read_run(write_run([make_row("street", "t265", "exact", "abraham")]))
-    source, rectified = draw_rectified(sources, run.results, run.methods).axes
+    source, rectified = RectifiedPairs().draw(run.results, given(run, sources)).axes
     for ax in (source, rectified):
         assert len({round(box.get_width(), 6) for box in ax.patches}) == 1
     left, right = rectified.patches[::2], rectified.patches[1::2]
@@ -172,7 +183,7 @@ def test_boxes_are_equally_large_and_level_on_a_rectified_pair(write_run: WriteR
 def test_what_lies_beyond_the_scale_has_a_colour_of_its_own(write_run: WriteRun, sources: Sources) -> None:
     run = read_run(write_run([make_row("street", "t265", "exact", "abraham")]))
     torn = replace(sources, distortion=lambda rect, rig, side, px: np.full(len(px), 1e7))
-    figure = draw_distortion_maps(torn, run.results, run.methods)
+    figure = DistortionMaps().draw(run.results, given(run, torn))
     shades = figure.axes[0].images[0].get_array()
     assert shades is not None
     wanted = [int(BEYOND[i : i + 2], 16) / 255 for i in (1, 3, 5)]
@@ -186,14 +197,14 @@ def test_protocols_stand_side_by_side_with_the_pairs_below(write_run: WriteRun) 
     shown = [title for key, title in PROTOCOLS.items() if key in run.metrics]
     assert list(chart.panels) == shown
     assert list(chart.panels[shown[0]]) == ["street\nt265", "room\nt265"]
-    axes = draw_bars(chart).axes[: len(shown)]
+    axes = draw_bars(chart, LOOKS).axes[: len(shown)]
     assert [ax.get_title() for ax in axes] == shown
 
 
 def test_stated_times_are_lines_with_their_number(write_run: WriteRun) -> None:
     row = make_row("street", "t265", "exact", "abraham", total_s=0.1)
     chart = stage_chart(read_run(write_run([row])), STAGES, {"fit": 3.0, "total": 15.0})
-    ax = draw_bars(chart).axes[0]
+    ax = draw_bars(chart, LOOKS).axes[0]
     assert [text.get_text() for text in ax.texts] == ["3", "15"]
     assert ax.get_yscale() == "log"
     assert ax.get_ylim()[1] > 15
@@ -204,7 +215,7 @@ def test_clouds_without_a_truth_have_a_row_a_method_and_one_view_of_all(
 ) -> None:
     run = read_run(write_run([make_row("a", "t265", "calibrated", m) for m in ("abraham", "conventional")]))
     known = replace(sources.pair(run.results[0]), knows_truth=False)
-    figure = draw_clouds(replace(sources, pair=lambda result: known), run.results, run.methods)
+    figure = Clouds().draw(run.results, given(run, replace(sources, pair=lambda result: known)))
     pictures = [np.asarray(ax.images[0].get_array()) for ax in figure.axes if ax.images]
     assert len(pictures) == 4
     assert np.array_equal(pictures[0], pictures[2])  # the same perfect cloud, seen from the same place
@@ -218,7 +229,7 @@ def test_a_photographed_pair_without_matches_is_shown_without_marks(
     run = read_run(write_run([make_row("a", "t265", "calibrated", "abraham")]))
     nothing = rb.Matches(np.empty((0, 2)), np.empty((0, 2)))
     known = replace(sources.pair(run.results[0]), matches=nothing, knows_truth=False)
-    figure = draw_rectified(replace(sources, pair=lambda result: known), run.results, run.methods)
+    figure = RectifiedPairs().draw(run.results, given(run, replace(sources, pair=lambda result: known)))
     for ax in figure.axes:
         assert ax.images
         assert not ax.patches

@@ -12,8 +12,9 @@ from typing import Any
 import pytest
 
 from rectbench.errors import InvalidInput, Unavailable
+from rectbench.plugins.figure import Sources
 from rectbench.progress import Advance, Progress
-from rectbench.reporting import Sources, write_report
+from rectbench.reporting.report import write_report
 from tests.reporting.runs import METHODS, failed_row, fake_sources, quick_rows, save_run
 
 WriteRun = Callable[..., Path]

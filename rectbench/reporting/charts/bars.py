@@ -1,56 +1,72 @@
-"""Grouped bars: of one metric, a panel a rig and a group a scene; or a panel a metric and a group a pair."""
+"""Row error and distortion as grouped bars: a panel a rig or a metric, a group a scene or a pair."""
 
 from __future__ import annotations
 
-import math
-import re
-import textwrap
-from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from itertools import product
-from typing import TYPE_CHECKING
 
-from rectbench.metrics.catalogue import column
-from rectbench.reporting.style import COLUMN_INCHES, FAINT, INK, PAGE_INCHES, looks, plain_log_ticks
+from rectbench.metrics.catalogue import PROTOCOLS, ROW_ERRORS, column
+from rectbench.plugins.figure import Drawing, Figure, FigureData, Part, Result
+from rectbench.reporting.charts.grouped_bars import Bar, BarChart, bar_drawing, bar_of
 from rectbench.reporting.tables.labels import pair_labels
-from rectbench.runs.run import Result, Run
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-_LEAST_BAR_INCHES = 0.06
-_LABEL_BAR_INCHES = 0.075
-_LETTER_INCHES = 0.055
-_LOG_FROM = 20.0
+_BOUNDED = ("distortion_rescaled", "distortion_stretched")
+"""Never far above 1, as every image may be shrunk: a logarithmic axis would hide a third more or less."""
+_CAPTIONS = {
+    "log_distortion": "Log distortion on each pair: free of scale, and what methods are ranked by.",
+    "distortion_native": "The paper's distortion L on each pair, each method at its authors' own scale.",
+    "distortion_rescaled": "The same after the one scale of the image that is best for each method.",
+}
 
 
-@dataclass(frozen=True)
-class Bar:
-    """One method on one pair, over seeds: mean, least and largest value, or why there is none."""
+class Bars(Figure):
+    """Row error and distortion of each method on each pair, as bars."""
 
-    mean: float | None
-    least: float | None
-    largest: float | None
-    failure: str
+    name = "bars"
+    topic = "Charts"
+    usual = 1
 
-
-@dataclass(frozen=True)
-class BarChart:
-    """All a chart shows, in the shown unit; `panels` maps title -> group -> method -> Bar."""
-
-    label: str
-    floor: float
-    reference: float | None
-    methods: tuple[str, ...]
-    panels: Mapping[str, Mapping[str, Mapping[str, Bar]]]
-    stated: Mapping[str, float] = field(default_factory=dict)
-    """Values that somebody else states, by group."""
-    linear: frozenset[str] = frozenset()
-    """Panels with an axis of their own, linear from 0: of values that are bounded."""
+    def drawings(self, given: FigureData) -> Iterator[Drawing]:
+        """A chart a metric; of a part of a report, or of photographs, all ways to measure a thing in one."""
+        part = given.part
+        return _by_pair(given) if part.group or not part.has_truth else _by_scene(given)
 
 
-def bar_chart(run: Run, key: str, pose: str, reference: float | None = None) -> BarChart:
+def _by_scene(given: FigureData) -> Iterator[Drawing]:
+    part = given.part
+    if "row_error_mean_px" in part.metrics:
+        for pose in part.noisy_poses:
+            chart = bar_chart(part, "row_error_mean_px", pose, reference=1.0)
+            caption = "Mean row error of true correspondences on each pair."
+            yield bar_drawing(chart, given, "row-error", f"Row error, {pose} pose", caption, pose)
+    for key, caption in _CAPTIONS.items():
+        if key in part.metrics:
+            chart = bar_chart(part, key, part.geometric_pose)
+            yield bar_drawing(chart, given, key, column(key).heading.capitalize(), caption)
+
+
+def _by_pair(given: FigureData) -> Iterator[Drawing]:
+    part, pose = given.part, given.part.geometric_pose
+    if any(key in part.metrics for key in ROW_ERRORS):
+        for noisy in part.noisy_poses:
+            chart = pair_chart(part, "row error [px]", ROW_ERRORS, noisy, reference=1.0)
+            caption = "Mean row error on each pair, measured in the images" + (
+                " and against the truth." if part.has_truth else "."
+            )
+            of = noisy if len(part.noisy_poses) > 1 else ""
+            yield bar_drawing(chart, given, "row-error", f"Row error, {noisy} pose", caption, of)
+    if any(key in part.metrics for key in PROTOCOLS):
+        chart = pair_chart(part, "distortion L", PROTOCOLS, pose, bounded=_BOUNDED)
+        caption = "The paper's distortion L on each pair, under each protocol."
+        if chart.linear:
+            caption += " Rescaled and stretched have a linear axis from 0."
+        yield bar_drawing(chart, given, "distortion", "Distortion by protocol", caption)
+    if "log_distortion" in part.metrics:
+        chart = pair_chart(part, "log distortion", {"log_distortion": ""}, pose)
+        yield bar_drawing(chart, given, "log-distortion", "Log distortion", _CAPTIONS["log_distortion"])
+
+
+def bar_chart(run: Part, key: str, pose: str, reference: float | None = None) -> BarChart:
     """Collect a metric's bars; `reference` is a value worth a line, in the shown unit."""
     shown_as = column(key)
     panels: dict[str, dict[str, dict[str, Bar]]] = {}
@@ -59,7 +75,7 @@ def bar_chart(run: Run, key: str, pose: str, reference: float | None = None) -> 
         title = f"{rig}, {motion}" if len(run.motions) > 1 else rig
         groups = {
             scene: {
-                method: _bar(run.select(cells, method=method), key, shown_as.scale)
+                method: bar_of(run.select(cells, method=method), key, shown_as.scale)
                 for method in run.methods
                 if any(r.method == method for r in cells)
             }
@@ -77,7 +93,7 @@ def bar_chart(run: Run, key: str, pose: str, reference: float | None = None) -> 
 
 
 def pair_chart(
-    run: Run,
+    run: Part,
     label: str,
     titles: Mapping[str, str],
     pose: str,
@@ -96,7 +112,7 @@ def pair_chart(
         if key in run.metrics:
             panels[title] = {
                 label: {
-                    method: _bar(run.select(results, place=place, method=method), key, column(key).scale)
+                    method: bar_of(run.select(results, place=place, method=method), key, column(key).scale)
                     for method in run.methods
                 }
                 for place, label in labels.items()
@@ -112,195 +128,3 @@ def pair_chart(
 def _is_not_to_be_had(results: Sequence[Result], key: str) -> bool:
     """Whether a pair has no such number though nothing failed, as one without a board has no board's."""
     return all(r.ok and key not in r.metrics for r in results)
-
-
-def stage_chart(run: Run, stages: Mapping[str, str], stated: Mapping[str, float]) -> BarChart:
-    """Seconds of each stage (column to name), a panel a rig and width; `stated` are somebody else's."""
-    panels = {
-        rig: {
-            name: {
-                method: _bar(run.select(rig=rig, method=method), key, 1.0)
-                for method in run.methods
-                if run.select(rig=rig, method=method)
-            }
-            for key, name in stages.items()
-            if key in run.metrics
-        }
-        for rig in run.rigs
-    }
-    return BarChart("time [s]", 1e-4, None, run.methods, panels, stated)
-
-
-def _bar(results: Sequence[Result], key: str, scale: float) -> Bar:
-    values = [r.metrics[key] * scale for r in results if r.ok and math.isfinite(r.metrics.get(key, math.nan))]
-    failed = [r.status for r in results if not r.ok]
-    failure = failed[0] if failed else "no value" if len(values) < len(results) else ""
-    if not values:
-        return Bar(None, None, None, failure or "no value")
-    return Bar(sum(values) / len(values), min(values), max(values), failure)
-
-
-def draw_bars(chart: BarChart) -> Figure:
-    """Draw the chart: shared vertical axis but for linear panels, a cross where a bar is missing."""
-    from matplotlib.figure import Figure
-
-    groups = max(len(panel) for panel in chart.panels.values())
-    slots = groups * (len(chart.methods) + 1)
-    small = len(chart.panels) == 1 and slots * _LABEL_BAR_INCHES < COLUMN_INCHES - 0.5
-    width = COLUMN_INCHES if small else PAGE_INCHES
-    least = max(slots * _LEAST_BAR_INCHES, groups * _longest_word(chart) * _LETTER_INCHES)
-    most = max(1, int((width - 0.5) / least))
-    columns = min(len(chart.panels), 4, most)
-    columns = math.ceil(len(chart.panels) / math.ceil(len(chart.panels) / columns))
-    rows = math.ceil(len(chart.panels) / columns)
-    figure = Figure(figsize=(width, 0.45 + 1.45 * rows + (0.18 if small else 0)), layout="constrained")
-    axes = figure.subplots(rows, columns, sharey=not chart.linear, squeeze=False).ravel().tolist()
-    slot_inches = (width - 0.5) / columns / slots
-    scales = {is_linear: _scale(chart, is_linear) for is_linear in (False, True)}
-    for ax, (title, panel) in zip(axes, chart.panels.items(), strict=False):
-        log, (bottom, top) = scales[title in chart.linear]
-        _draw_panel(ax, chart, panel, bottom, slot_inches)
-        ax.set_title(title)
-        ax.set_yscale("log" if log else "linear")
-        ax.set_ylim(bottom, top)
-        if log:
-            plain_log_ticks(ax.yaxis)
-        ax.grid(axis="y")
-        if chart.reference is not None:
-            ax.axhline(chart.reference, color=INK, linewidth=0.7, linestyle=(0, (4, 2)), zorder=1)
-    for ax in axes[len(chart.panels) :]:
-        ax.set_axis_off()
-    for ax in axes[: len(chart.panels) : columns]:
-        ax.set_ylabel(chart.label)
-    _add_legend(figure, chart, 3 if small else 6)
-    return figure
-
-
-def _scale(chart: BarChart, is_linear: bool) -> tuple[bool, tuple[float, float]]:
-    """Whether the axis of the linear panels, or of the others, is logarithmic, and its limits."""
-    panels = [panel for title, panel in chart.panels.items() if (title in chart.linear) == is_linear]
-    bars = [b for panel in panels for group in panel.values() for b in group.values()]
-    largest = [max(b.largest, chart.floor) for b in bars if b.largest is not None]
-    least = [max(b.least, chart.floor) for b in bars if b.least is not None]
-    positive = [value for value in least + largest if value > 0]
-    if not positive:
-        return False, (0.0, 1.0)
-    positive += chart.stated.values()
-    if max(positive) <= chart.floor:
-        return True, (0.1 * chart.floor, 1e3 * chart.floor)  # all below what is shown as a number
-    low, high = min(positive), max(positive)
-    high = max(high, chart.reference or 0.0)
-    if is_linear or high / low < _LOG_FROM:
-        return False, (0.0, high * 1.08)
-    bottom = 10.0 ** (math.floor(math.log10(low) - 0.15))
-    return True, (bottom, high * (high / bottom) ** 0.06)
-
-
-def _draw_panel(
-    ax: Axes,
-    chart: BarChart,
-    panel: Mapping[str, Mapping[str, Bar]],
-    bottom: float,
-    slot: float,
-) -> None:
-    colours = looks(chart.methods)
-    middle = (len(chart.methods) - 1) / 2
-    step = len(chart.methods) + 1
-    for g, bars in enumerate(panel.values()):
-        for m, method in enumerate(chart.methods):
-            if method not in bars:
-                continue
-            bar, x = bars[method], g * step + m - middle
-            if bar.mean is not None and bar.least is not None and bar.largest is not None:
-                height = max(bar.mean, chart.floor) - bottom
-                ax.bar(x, height, width=0.9, bottom=bottom, color=colours[method][0], linewidth=0)
-                if bar.largest > bar.least:
-                    span = [max(bar.least, chart.floor), max(bar.largest, chart.floor)]
-                    ax.plot([x, x], span, color=INK, linewidth=0.6, solid_capstyle="butt")
-            if bar.failure:
-                _mark_failure(ax, x, bar, colours[method][0] if bar.mean is None else INK, slot)
-    for g, name in enumerate(panel):
-        if name in chart.stated:
-            _mark_stated(ax, g * step, step / 2 - 0.2, chart.stated[name])
-    ax.set_xlim(-step / 2, (len(panel) - 0.5) * step)
-    names = [_wrapped(name, slot * step) for name in panel]
-    crowded = max(len(line) for name in names for line in name.split("\n")) * _LETTER_INCHES > slot * step
-    ax.set_xticks(
-        [g * step for g in range(len(panel))],
-        names,
-        rotation=25 if crowded else 0,
-        ha="right" if crowded else "center",
-        rotation_mode="anchor" if crowded else "default",
-    )
-    ax.tick_params(axis="x", length=0)
-
-
-def _longest_word(chart: BarChart) -> int:
-    """Letters of the longest part that names of several lines cannot be broken within."""
-    names = [name for panel in chart.panels.values() for name in panel if "\n" in name]
-    return max((len(word) for name in names for word in re.findall(r"[^\s-]+-?", name)), default=0)
-
-
-def _wrapped(name: str, inches: float) -> str:
-    """A name of several lines with its long ones broken at hyphens and blanks; one line stays one."""
-    lines = name.split("\n")
-    if len(lines) == 1:
-        return name
-    letters = max(1, int(inches / _LETTER_INCHES))
-    return "\n".join(part for line in lines for part in textwrap.wrap(line, letters, break_long_words=False))
-
-
-def _mark_stated(ax: Axes, x: float, reach: float, value: float) -> None:
-    """A stated value as a line over its group, with the number on it."""
-    ax.plot([x - reach, x + reach], [value, value], color=INK, linewidth=1.4, solid_capstyle="butt")
-    ax.annotate(
-        f"{value:g}",
-        (x, value),
-        xytext=(0, 1.5),
-        textcoords="offset points",
-        ha="center",
-        size=6.5,
-        color=INK,
-    )
-
-
-def _mark_failure(ax: Axes, x: float, bar: Bar, colour: str, slot: float) -> None:
-    """A cross at the foot of the gap, with the status beside it where it fits."""
-    at_foot = ax.get_xaxis_transform()
-    ax.plot(
-        [x],
-        [0.035],
-        marker="x",
-        markersize=3.2,
-        markeredgewidth=1.1,
-        color=colour,
-        transform=at_foot,
-        zorder=4,
-    )
-    if bar.mean is None and slot >= _LABEL_BAR_INCHES:
-        ax.text(
-            x,
-            0.09,
-            bar.failure,
-            transform=at_foot,
-            rotation=90,
-            size=5,
-            color=FAINT,
-            ha="center",
-            va="bottom",
-        )
-
-
-def _add_legend(figure: Figure, chart: BarChart, columns: int) -> None:
-    from matplotlib.artist import Artist
-    from matplotlib.lines import Line2D
-    from matplotlib.patches import Patch
-
-    colours = looks(chart.methods)
-    handles: list[Artist] = [Patch(color=colours[m][0], label=m) for m in chart.methods]
-    if any(b.failure for panel in chart.panels.values() for group in panel.values() for b in group.values()):
-        cross = Line2D([], [], linestyle="", marker="x", markersize=3.2, color=INK, label="not measured")
-        handles.append(cross)
-    if chart.stated:
-        handles.append(Line2D([], [], color=INK, linewidth=1.4, label="stated"))
-    figure.legend(handles=handles, loc="outside upper center", ncols=min(columns, len(handles)))

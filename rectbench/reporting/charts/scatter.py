@@ -1,18 +1,18 @@
-"""Distortion against coverage: a point a cell, so that what was bought with field of view shows."""
+"""Distortion against coverage as points, one panel a measure of distortion."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rectbench.metrics.catalogue import column
-from rectbench.reporting.style import COLUMN_INCHES, FAINT, INK, PAGE_INCHES, PAPER, looks, plain_log_ticks
-from rectbench.runs.run import Run
+from rectbench.plugins.figure import Drawing, Figure, FigureData, Look, Part
+from rectbench.reporting.style import COLUMN_INCHES, FAINT, INK, PAGE_INCHES, PAPER, plain_log_ticks
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+    import matplotlib.figure
 
 _LOG_FROM = 20.0
 Points = tuple[tuple[float, float], ...]
@@ -29,7 +29,31 @@ class Scatter:
     missing: Mapping[str, int]
 
 
-def scatter(run: Run, key_x: str, keys_y: tuple[str, ...]) -> Scatter:
+class DistortionCoverage(Figure):
+    """Distortion against coverage: a point a cell, so that what was bought with field of view shows."""
+
+    name = "scatter"
+    topic = "Charts"
+    usual = 2
+
+    def drawings(self, given: FigureData) -> Iterator[Drawing]:
+        """One chart, where both were measured."""
+        metrics = given.part.metrics
+        coverage = next((k for k in ("coverage_solid_angle", "coverage_pixels") if k in metrics), None)
+        measures = tuple(k for k in ("log_distortion", "distortion_rescaled") if k in metrics)
+        if coverage and measures:
+            data = scatter(given.part, coverage, measures)
+            yield Drawing(
+                "distortion-coverage",
+                "Distortion against coverage",
+                "Small: a pair. Large: the method's mean. Best is low and to the right: little distortion, "
+                "and the whole field of view kept.",
+                data,
+                lambda: draw_scatter(data, given.looks),
+            )
+
+
+def scatter(run: Part, key_x: str, keys_y: tuple[str, ...]) -> Scatter:
     """Collect the points of the pose under which distortion is shown; cells without both are counted."""
     results = run.select(pose=run.geometric_pose)
     x = column(key_x)
@@ -48,21 +72,22 @@ def scatter(run: Run, key_x: str, keys_y: tuple[str, ...]) -> Scatter:
     return Scatter(x.full_heading, labels, run.methods, tuple(panels), missing)
 
 
-def draw_scatter(data: Scatter) -> Figure:
+def draw_scatter(data: Scatter, looks: Mapping[str, Look]) -> matplotlib.figure.Figure:
     """Draw small points for cells and a large one for each method's mean."""
-    from matplotlib.figure import Figure
+    import matplotlib.figure
     from matplotlib.lines import Line2D
 
     width = PAGE_INCHES if len(data.panels) > 1 else COLUMN_INCHES
-    figure = Figure(figsize=(width, 2.6), layout="constrained")
+    legend_columns = 3 if width == COLUMN_INCHES else 5
+    height = 2.45 + 0.15 * math.ceil(len(data.methods) / legend_columns)
+    figure = matplotlib.figure.Figure(figsize=(width, height), layout="constrained")
     axes = figure.subplots(1, len(data.panels), squeeze=False)[0]
-    colours = looks(data.methods)
     for ax, label, panel in zip(axes, data.label_y, data.panels, strict=True):
         for method, points in panel.items():
             if not points:
                 continue
             xs, ys = zip(*points, strict=True)
-            colour, marker = colours[method]
+            colour, marker, _ = looks[method]
             ax.scatter(xs, ys, s=9, color=colour, marker=marker, alpha=0.55, linewidth=0)
             mean = sum(xs) / len(xs), sum(ys) / len(ys)
             ax.scatter(*mean, s=46, color=colour, marker=marker, edgecolor=INK, linewidth=0.8, zorder=3)
@@ -87,8 +112,8 @@ def draw_scatter(data: Scatter) -> Figure:
             [],
             [],
             linestyle="",
-            marker=colours[m][1],
-            color=colours[m][0],
+            marker=looks[m].marker,
+            color=looks[m].colour,
             markersize=5.5,
             markeredgecolor=PAPER if not any(p[m] for p in data.panels) else INK,
             markeredgewidth=0.6,
@@ -96,5 +121,5 @@ def draw_scatter(data: Scatter) -> Figure:
         )
         for m in data.methods
     ]
-    figure.legend(handles=handles, loc="outside upper center", ncols=3 if width == COLUMN_INCHES else 5)
+    figure.legend(handles=handles, loc="outside upper center", ncols=legend_columns)
     return figure

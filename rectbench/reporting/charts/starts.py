@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rectbench.reporting.style import COLUMN_INCHES, INK, PAGE_INCHES, looks, plain_log_ticks
+from rectbench.plugins.figure import Drawing, Figure, FigureData, Look, Part, Result
+from rectbench.reporting.style import COLUMN_INCHES, INK, PAGE_INCHES, plain_log_ticks
 from rectbench.reporting.tables.labels import pair_labels
 from rectbench.reporting.tables.numbers import decade
-from rectbench.runs.rows import Row
-from rectbench.runs.run import Run
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+    import matplotlib.figure
 
 ENERGY = "distortion_native"
 """What the fit minimises, as a column."""
@@ -43,7 +42,34 @@ class Starts:
         return sum(ratio <= 1 + SAME_MINIMUM for ratio in self.ratios)
 
 
-def start_study(part: Run, run: Run) -> tuple[Starts, ...]:
+class RandomStarts(Figure):
+    """Where a method that minimises an energy ends from random starts."""
+
+    name = "starts"
+    topic = "Random starts"
+
+    def sets_apart(self, result: Result) -> bool:
+        """Whether it is one of the starts: told something else than the default."""
+        return bool(result.options)
+
+    def drawings(self, given: FigureData) -> Iterator[Drawing]:
+        """One chart, where there are starts beside a default one."""
+        study = start_study(given.part, given.run)
+        if study:
+            method = study_method(given.part)
+            look = next(given.looks[r.method] for r in given.run.results if r.cell.method == method)
+            yield Drawing(
+                "starts",
+                "Random starts",
+                f"Where {method} ends from random starts: its distortion L there, relative to the one from "
+                "its default start. Above each pair: how many end at most 1 % above it. At the foot of the "
+                "axis stand those within 10⁻⁶ of it, and those below it.",
+                study,
+                lambda: draw_starts(study, look),
+            )
+
+
+def start_study(part: Part, run: Part) -> tuple[Starts, ...]:
     """The starts of a part by pair: its rows with options, beside that without any, of the whole run."""
     defaults = {_cell(r): r for r in run.results if r.metrics.get(ENERGY) and not r.options}
     studied = [r for r in part.results if r.options and _cell(r) in defaults]
@@ -54,33 +80,34 @@ def start_study(part: Run, run: Run) -> tuple[Starts, ...]:
     )
 
 
-def study_method(part: Run) -> str:
+def study_method(part: Part) -> str:
     """The method under study."""
-    return next(r.cell.method for r in part.results if r.options)
+    return str(next(r.cell.method for r in part.results if r.options))
 
 
-def _cell(result: Row) -> tuple[object, ...]:
+def _cell(result: Result) -> tuple[object, ...]:
     return *result.pair, result.pose, result.cell.method
 
 
-def _starts(label: str, results: list[Row], defaults: Mapping[tuple[object, ...], Row]) -> Starts:
+def _starts(label: str, results: list[Result], defaults: Mapping[tuple[object, ...], Result]) -> Starts:
     measured = [r for r in results if r.ok and ENERGY in r.metrics]
     ratios = sorted(r.metrics[ENERGY] / defaults[_cell(r)].metrics[ENERGY] for r in measured)
     return Starts(label, tuple(ratios), len(results) - len(ratios))
 
 
-def draw_starts(study: tuple[Starts, ...], method: str) -> Figure:
+def draw_starts(study: tuple[Starts, ...], look: Look) -> matplotlib.figure.Figure:
     """A column of points a pair, on a logarithmic axis of the excess over the default start's L."""
-    from matplotlib.figure import Figure
+    import matplotlib.figure
 
     width = min(PAGE_INCHES, max(COLUMN_INCHES, 0.9 + 1.1 * len(study)))
-    figure = Figure(figsize=(width, 2.3), layout="constrained")
+    figure = matplotlib.figure.Figure(figsize=(width, 2.3), layout="constrained")
     ax = figure.subplots()
-    colour, marker = looks([method])[method]
     for x, starts in enumerate(study):
         excess = np.maximum(np.array(starts.ratios) - 1, _FLOOR)
         across = x + 0.5 * (np.arange(len(excess)) / max(1, len(excess) - 1) - 0.5)
-        ax.plot(across, excess, marker, color=colour, markersize=3, markeredgewidth=0, clip_on=False)
+        ax.plot(
+            across, excess, look.marker, color=look.colour, markersize=3, markeredgewidth=0, clip_on=False
+        )
         words = f"{starts.same} of {starts.count}" + (f", {starts.failed} failed" if starts.failed else "")
         ax.text(x, 1.02, words, transform=ax.get_xaxis_transform(), ha="center", va="bottom", size=6.5)
     ax.set_yscale("log")

@@ -8,35 +8,37 @@ from dataclasses import dataclass
 
 from rectbench.metrics.catalogue import column
 from rectbench.plugins.metric import Column
+from rectbench.reporting.asked import methods_part, part_title
 from rectbench.reporting.figures import EXTENSIONS, Drawn
-from rectbench.reporting.page.run_facts import Fact, part_title, run_facts
+from rectbench.reporting.names import slug
+from rectbench.reporting.page.run_facts import Fact, run_facts
 from rectbench.reporting.style import looks
 from rectbench.reporting.tables.table import SPELLINGS, Entry, Table
-from rectbench.reporting.tables.tabulation import methods_part, slug
 from rectbench.runs.run import Run
 
-TOPICS = (
-    ("ranking", "Ranking", ("main",), ()),
-    ("charts", "Charts", (), ("bars", "scatter")),
-    ("poses", "Poses", ("pose",), ()),
-    ("rows", "Row error", ("rows",), ()),
-    ("distortion", "Distortion", ("distortion",), ()),
-    ("pictures", "Pictures", (), ("pairs", "maps", "squares")),
-    ("energy", "Energy", ("energy",), ("energy",)),
-    ("starts", "Random starts", ("starts",), ("starts",)),
-    ("reconstruction", "Reconstruction", ("depth",), ("clouds",)),
-    ("time", "Time", ("time",), ("timing",)),
-    ("pairs", "Every pair", ("pair",), ()),
-    ("photographs", "Photographs", ("photographs", "left-out"), ()),
-)
-"""What a part of the page is divided into: name, title, kinds of tables, kinds of figures."""
+FIRST = ("Ranking", "Charts", "Poses", "Row error", "Distortion", "Pictures", "Energy", "Random starts")
+LAST = ("Reconstruction", "Time", "Every pair", "Photographs")
+"""The headings of a part in their order; topics that are not among them come between."""
+_TABLES = {
+    "main": "Ranking",
+    "pose": "Poses",
+    "rows": "Row error",
+    "distortion": "Distortion",
+    "energy": "Energy",
+    "starts": "Random starts",
+    "depth": "Reconstruction",
+    "time": "Time",
+    "pair": "Every pair",
+    "photographs": "Photographs",
+    "left-out": "Photographs",
+}
+"""Under which heading each kind of table stands."""
 
 
 @dataclass(frozen=True)
 class Topic:
     """A section of a part: its tables and its figures; `anchor` is where links lead."""
 
-    name: str
     anchor: str
     title: str
     tables: list[Table]
@@ -110,7 +112,7 @@ def render_page(run: Run, tables: Sequence[Table], drawn: Sequence[Drawn]) -> st
         parts=[_part(part, tables, drawn) for part in run.parts],
         failures=of_kind.get("failures"),
         tables=list(tables),
-        colours={method: colour for method, (colour, _) in looks(run.methods).items()},
+        colours={method: look.colour for method, look in looks(run.methods).items()},
         glossary=[column(key) for key in run.metrics],
         facts=run_facts(run),
         full_json=run.record.to_json("cells"),
@@ -125,12 +127,19 @@ def _methods(run: Run) -> tuple[str, ...]:
 
 
 def _part(part: Run, tables: Sequence[Table], drawn: Sequence[Drawn]) -> Part:
-    topics, anchor = [], slug("part", part.group) if part.group else ""
-    for name, heading, of_tables, of_figures in TOPICS:
-        mine = [t for t in tables if t.part == part.group and t.kind in of_tables]
-        figures = [d for d in drawn if d.plan.part == part.group and d.plan.kind in of_figures]
-        if mine or figures:
-            topics.append(Topic(name, slug(anchor, name), heading, mine, figures))
+    anchor = slug("part", part.group) if part.group else ""
+    found: dict[str, Topic] = {}
+    mine = [table for table in tables if table.part == part.group and table.kind in _TABLES]
+    figures = [one for one in drawn if one.placed.part == part.group]
+    for heading in (*(_TABLES[table.kind] for table in mine), *(one.placed.topic for one in figures)):
+        found[heading] = Topic(
+            slug(anchor, heading),
+            heading,
+            [table for table in mine if _TABLES[table.kind] == heading],
+            [one for one in figures if one.placed.topic == heading],
+        )
+    between = sorted(found.keys() - {*FIRST, *LAST})
+    topics = [found[heading] for heading in (*FIRST, *between, *LAST) if heading in found]
     return Part(part.group, anchor, part_title(part), topics)
 
 

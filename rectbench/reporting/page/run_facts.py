@@ -40,27 +40,6 @@ def run_facts(run: Run) -> list[Fact]:
     return [*facts, Fact("Versions", ", ".join(present))]
 
 
-USUAL_KINDS = ("bars", "scatter", "pairs", "maps")
-"""The kinds of figures of a report that asks for none: what every method and every report has."""
-
-
-def wanted_kinds(run: Run) -> tuple[str, ...]:
-    """The kinds of figures that the report, or this part of it, asks for."""
-    part, spec = run.stated_part, run.record.spec
-    wanted = spec.figures if part is None else part.figures
-    return USUAL_KINDS if wanted is None else wanted
-
-
-def part_title(run: Run) -> str:
-    """The heading of a part, else its name; nothing for a run without parts."""
-    return (run.stated_part and run.stated_part.title) or run.group
-
-
-def stated_seconds(run: Run) -> dict[str, float]:
-    """Times that somebody else stated, by stage: `pose`, `fit`, `warp`."""
-    return {str(stage): seconds for stage, seconds in run.record.spec.stated_seconds.items()}
-
-
 def _text(value: Any) -> str:
     if isinstance(value, Mapping):
         return ", ".join(f"{name} {item}" for name, item in value.items() if item is not None)

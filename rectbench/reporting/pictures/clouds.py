@@ -9,13 +9,12 @@ import numpy as np
 
 from rectbench.images.stereo_pair import StereoPair
 from rectbench.metrics.catalogue import column
+from rectbench.plugins.figure import FigureData, Result, Sources
 from rectbench.rendering.truth import Truth
-from rectbench.reporting.pictures.panels import fit_into_box, panel_grid, write_head, write_message
-from rectbench.reporting.pictures.views import Floats, Patches, Picture, View, patches_of, splat, two_views
-from rectbench.reporting.sources import Sources, attempted
-from rectbench.reporting.style import looks
+from rectbench.reporting.pictures.pair_picture import PairPicture
+from rectbench.reporting.pictures.panels import attempted, fit_into_box, panel_grid, write_head, write_message
+from rectbench.reporting.pictures.views import Floats, Patches, Picture, View, painted, patches_of, two_views
 from rectbench.reporting.tables.numbers import shown
-from rectbench.runs.run import Result
 from rectbench.types import FloatArray
 
 if TYPE_CHECKING:
@@ -29,31 +28,45 @@ _NOTED = ("reconstruction_completeness", "reconstruction_density")
 _BORDER = "#bbbbbb"
 
 
-def draw_clouds(sources: Sources, results: Sequence[Result], methods: Sequence[str]) -> Figure:
-    """A row the truth, if it is known, and a row a method: seen from beside the cameras, and from above."""
-    known = sources.pair(results[0])
-    clouds = [
-        (r, attempted(r, lambda r=r: _reconstructed(sources, r)))  # type: ignore[misc]
-        for r in results
-    ]
-    # All are seen alike: from viewpoints made from the truth, else from what they show together.
-    points: FloatArray | Floats
-    if known.knows_truth:
-        points = known.truth.points_left[known.truth.visible_left]
-    else:
-        points = _together([patches for _, patches in clouds if not isinstance(patches, str)])
-    views = two_views(points, SIZE)
-    heads = 2 if known.knows_truth else 0
-    figure, axes = panel_grid(2 * len(results) + heads, 2, SIZE[1] / SIZE[0])
-    colours = looks(methods)
-    if known.knows_truth:
-        _draw_row(axes[:2], _pictures(_true_patches(known.images, known.truth), views))
-        _write_heads(axes[:2], "truth", "the left image at its depth")
-    for i, (result, patches) in enumerate(clouds):
-        row = axes[heads + 2 * i : heads + 2 * i + 2]
-        _draw_row(row, patches if isinstance(patches, str) else _pictures(patches, views))
-        _write_heads(row, result.method, _note(result), colours[result.method][0])
-    return figure
+class Clouds(PairPicture):
+    """What is reconstructed through each method's rectification, seen from two places."""
+
+    name = "clouds"
+    topic = "Reconstruction"
+    needs = frozenset({"images"})
+    stem = "clouds"
+    title = "Reconstruction"
+    caption = (
+        "Dense matches on the rectified pair, triangulated, in the left image's colours: the same two views "
+        "of all. The one from above leaves out what is well above the cameras."
+    )
+    dpi = DPI
+
+    def draw(self, results: Sequence[Result], given: FigureData) -> Figure:
+        """A row the truth, if it is known, and a row a method: from beside the cameras, and from above."""
+        sources, looks = given.sources, given.looks
+        known = sources.pair(results[0])
+        clouds = [
+            (r, attempted(r, lambda r=r: _reconstructed(sources, r)))  # type: ignore[misc]
+            for r in results
+        ]
+        # All are seen alike: from viewpoints made from the truth, else from what they show together.
+        points: FloatArray | Floats
+        if known.knows_truth:
+            points = known.truth.points_left[known.truth.visible_left]
+        else:
+            points = _together([patches for _, patches in clouds if not isinstance(patches, str)])
+        views = two_views(points, SIZE)
+        heads = 2 if known.knows_truth else 0
+        figure, axes = panel_grid(2 * len(results) + heads, 2, SIZE[1] / SIZE[0])
+        if known.knows_truth:
+            _draw_row(axes[:2], _pictures(_true_patches(known.images, known.truth), views))
+            _write_heads(axes[:2], "truth", "the left image at its depth")
+        for i, (result, patches) in enumerate(clouds):
+            row = axes[heads + 2 * i : heads + 2 * i + 2]
+            _draw_row(row, patches if isinstance(patches, str) else _pictures(patches, views))
+            _write_heads(row, result.method, _note(result), looks[result.method].colour)
+        return figure
 
 
 def _together(clouds: Sequence[Patches]) -> Floats:
@@ -72,7 +85,7 @@ def _reconstructed(sources: Sources, result: Result) -> Patches:
 
 
 def _pictures(patches: Patches, views: Sequence[View]) -> list[Picture]:
-    return [splat(patches, view, SIZE) for view in views]
+    return [painted(patches, view, SIZE) for view in views]
 
 
 def _note(result: Result) -> str:

@@ -4,24 +4,24 @@ from __future__ import annotations
 
 import math
 import textwrap
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from typing import TYPE_CHECKING, TypeVar
 
+from rectbench.errors import RectbenchError
+from rectbench.plugins.figure import Result
 from rectbench.reporting.style import INK, PAGE_INCHES
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+Made = TypeVar("Made")
 _GAP_INCHES = 0.07
 _HEAD_INCHES = 0.2
 
 
 def panel_grid(
-    count: int,
-    columns: int,
-    aspect: float,
-    margin_inches: float = 0.0,
-    gap_inches: float = _GAP_INCHES,
+    count: int, columns: int, aspect: float, margin_inches: float = 0.0, gap_inches: float = _GAP_INCHES
 ) -> tuple[Figure, list[Axes]]:
     """A figure of `count` bare boxes, each `aspect` times as high as wide, with room for a head.
 
@@ -43,6 +43,16 @@ def panel_grid(
         ax.set_axis_off()
         axes.append(ax)
     return figure, axes
+
+
+def attempted(result: Result, make: Callable[[], Made]) -> Made | str:
+    """What `make` gives of a cell, or the reason why its picture is missing."""
+    if not result.ok:
+        return f"{result.status}: {result.reason}" if result.reason else result.status
+    try:
+        return make()
+    except Exception as error:  # a plugin's code runs here, and one picture is no reason to lose a report
+        return f"no picture: {error}" if isinstance(error, RectbenchError) else f"no picture: {error!r}"
 
 
 def fit_into_box(ax: Axes, width: float, height: float) -> None:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from rectbench.errors import Unavailable
 from rectbench.matching import Reconstruction
 from rectbench.reporting.pictures.panels import fit_into_box, panel_grid, write_head
-from rectbench.reporting.pictures.views import patches_of, splat, two_views
+from rectbench.reporting.pictures.views import painted, patches_of, two_views
 from rectbench.reporting.style import LOST, PAGE_INCHES, STYLE, encode, plain_log_ticks
 from rectbench.writing import write_atomically
 
@@ -75,7 +75,7 @@ def draw_reconstruction(reconstruction: Reconstruction) -> Figure:
     photograph = np.where(outside[..., None], np.uint8(255), reconstruction.colours)
     size = VIEW_PX, round(VIEW_PX * height / width)
     patches = patches_of(reconstruction.points, reconstruction.colours)
-    beside, above = (splat(patches, view, size) for view in two_views(patches.points, size))
+    beside, above = (painted(patches, view, size) for view in two_views(patches.points, size))
     panels = {
         "rectified left image": photograph,
         "distance": shades,

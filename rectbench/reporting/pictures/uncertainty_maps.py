@@ -50,11 +50,7 @@ def map_pixels(camera: Camera) -> FloatArray:
 
 
 def write_uncertainty(
-    found: Uncertainty,
-    covariance: RigCovariance,
-    camera: Camera,
-    folder: Path,
-    facts: Mapping[str, str],
+    found: Uncertainty, covariance: RigCovariance, camera: Camera, folder: Path, facts: Mapping[str, str]
 ) -> list[Path]:
     """Write the files of an uncertainty on the grid of `map_pixels`; returns their paths.
 

@@ -1,7 +1,7 @@
-"""A reconstruction seen from other places: each point a patch that reaches to its neighbours.
+"""A reconstruction seen from other places: pixels of an image as small surfaces, painted from far to near.
 
-The points are those of an image's pixels, so that the neighbours of a pixel tell how large a patch
-closes the surface there, however it is slanted and wherever it is seen from.
+The points are those of an image's pixels, so that neighbouring pixels tell how a surface goes on between
+them, however it is slanted and wherever it is seen from.
 """
 
 from __future__ import annotations
@@ -22,8 +22,6 @@ FINER = 2
 """Views are drawn that many times as large and then averaged."""
 STEEPEST = 25.0
 """Neighbours more than that many times farther apart in distance than across lie on two surfaces."""
-LARGEST_PX = 32
-"""No side of a patch is drawn longer, in pixels of the finer picture."""
 FRAMED = (0.04, 0.96)
 """Quantiles of the points across and down that a view shows, and of what is left and right of the eye."""
 WIDEST = 1.6
@@ -38,23 +36,19 @@ BESIDE, ABOVE = (0.3, -0.3, -0.6), (-0.25, -1.3, -0.7)
 """Where the eyes are, in multiples of that distance: right of the camera and behind it, and above it."""
 CUT = 0.4
 """The view from above leaves out what is higher than this share of the height of the highest: ceilings."""
-_MARGIN_PX = 3 * LARGEST_PX
-"""Around the finer picture, so that no patch ends outside: one may begin off it, and has two sides."""
-_NOTHING = np.uint64(2**64 - 1)
+_SUBPIXEL_BITS = 4
 
 
 @dataclass(frozen=True, eq=False)
 class Patches:
-    """A parallelogram for each point, in the left camera's frame, metres."""
+    """What an image's points show of surfaces, in the left camera's frame, metres."""
 
     points: Floats
-    """[N, 3] a corner of each."""
-    across: Floats
-    """[N, 3] its sides: to the next point in the row,"""
-    down: Floats
-    """[N, 3] and in the column; 0 where there is none, or another surface."""
+    """[N, 3] all of the points."""
+    corners: Floats
+    """[M, 4, 3] four neighbours each that lie on one surface, round the patch between them."""
     colours: Picture
-    """[N, 3] RGB."""
+    """[M, 3] RGB of the patches."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,30 +69,21 @@ class View:
     highest_m: float = np.inf
     """Height over the left camera up to which things are drawn."""
 
-    def turned(self, points: Floats) -> tuple[Floats, Floats, Floats]:
-        """Vectors [N, 3] along the view's axes."""
-        x, y, z = self.R_view_left.astype(np.float32) @ points.T
-        return x, y, z
+    def seen(self, points: Floats) -> Floats:
+        """Points [..., 3] in the view's frame."""
+        turned: Floats = (points - self.eye.astype(np.float32)) @ self.R_view_left.T.astype(np.float32)
+        return turned
 
 
 def patches_of(points: FloatArray, colours: Picture) -> Patches:
-    """The patches of an image's points [H, W, 3], NaN where there is none, in its colours [H, W, 3]."""
-    corners = points.astype(np.float32)
-    distance = np.sqrt(np.square(corners).sum(axis=-1))
-    exist = np.isfinite(distance)
-    across, down = (_sides(corners, distance, axis)[exist] for axis in (1, 0))
-    return Patches(corners[exist], across, down, colours[exist])
-
-
-def _sides(corners: Floats, distance: Floats, axis: int) -> Floats:
-    """Vectors [H, W, 3] to the next point along an axis of the image, 0 where a surface ends."""
-    sides = np.zeros_like(corners)
-    here, there = np.s_[:, :-1] if axis else np.s_[:-1], np.s_[:, 1:] if axis else np.s_[1:]
-    steps = corners[there] - corners[here]
-    along = np.square(distance[there] - distance[here])
-    joined = along < STEEPEST**2 * (np.einsum("hwi,hwi->hw", steps, steps) - along)
-    sides[here][joined] = steps[joined]
-    return sides
+    """The patches between an image's points [H, W, 3], NaN where there is none, in its colours [H, W, 3]."""
+    grid = points.astype(np.float32)
+    corners = np.stack([grid[:-1, :-1], grid[:-1, 1:], grid[1:, 1:], grid[1:, :-1]], axis=2)
+    sides = np.roll(corners, -1, axis=2) - corners
+    distance = np.linalg.norm(corners, axis=-1)
+    along = np.square(np.roll(distance, -1, axis=2) - distance)
+    joined = (along < STEEPEST**2 * (np.square(sides).sum(axis=-1) - along)).all(axis=-1)
+    return Patches(grid[np.isfinite(grid[..., 0])], corners[joined], colours[:-1, :-1][joined])
 
 
 def looking_at(eye: FloatArray, aim: FloatArray) -> View:
@@ -135,7 +120,7 @@ def _framed(
 ) -> View:
     view = looking_at(eye, aim)
     nearest_m = NEAREST * float(np.linalg.norm(aim - eye))
-    x, y, z = view.turned((points[points[:, 1] > -highest_m] - eye).astype(np.float32))
+    x, y, z = view.seen(points[points[:, 1] > -highest_m].astype(np.float32)).T
     ahead = z > nearest_m
     tangents = np.stack([x[ahead] / z[ahead], y[ahead] / z[ahead]], axis=-1)
     low, high = np.quantile(tangents, FRAMED, axis=0) if len(tangents) else np.array([[-0.5] * 2, [0.5] * 2])
@@ -146,69 +131,22 @@ def _framed(
     )
 
 
-def splat(patches: Patches, view: View, size: tuple[int, int]) -> Picture:
+def painted(patches: Patches, view: View, size: tuple[int, int]) -> Picture:
     """The patches on grey, [height, width, 3], the nearest one uppermost."""
-    seen, corners, sides = _projected(patches, view, size)
-    # Steps of at most a pixel along both sides.
-    columns, rows = (np.maximum(np.ceil(np.hypot(du, dv)), 1) for du, dv, _ in sides)
-    across, down = sides[0] / columns, sides[1] / rows
-    columns, rows = (np.minimum(count, LARGEST_PX).astype(np.int64) for count in (columns, rows))
-
-    stride, lines = (FINER * n + 2 * _MARGIN_PX for n in size)
-    uppermost = np.full(lines * stride, _NOTHING)
-    shape = columns * (LARGEST_PX + 1) + rows
-    order = np.argsort(shape, kind="stable")
-    for alike in np.split(order, np.flatnonzero(np.diff(shape[order])) + 1) if len(order) else ():
-        i, j = (np.arange(count[alike[0]], dtype=np.float32)[:, None] for count in (columns, rows))
-        u, v, z = (
-            (corner[alike] + i * a[alike])[:, None] + j * d[alike]
-            for corner, a, d in zip(corners, across, down, strict=True)
-        )
-        # Depth in the upper half, as the bits of a positive float sort like it; below, which patch.
-        key = np.maximum(z, 0).view(np.uint32).astype(np.uint64) << np.uint64(32) | seen[alike]
-        np.minimum.at(uppermost, v.astype(np.int32) * stride + u.astype(np.int32), key)
-    inner = uppermost.reshape(lines, stride)[_MARGIN_PX:-_MARGIN_PX, _MARGIN_PX:-_MARGIN_PX]
-    return _averaged(inner, patches.colours, size)
-
-
-def _projected(
-    patches: Patches, view: View, size: tuple[int, int]
-) -> tuple[NDArray[np.uint64], Floats, tuple[Floats, Floats]]:
-    """Which patches [N] may be seen; (u, v, depth) [3, N] of their corners and along their sides.
-
-    u and v are pixels of the finer picture with its margin.
-    """
-    focal = np.float32(FINER * size[0] / view.width)
-    u0, v0 = (
-        np.float32(FINER * n / 2 + _MARGIN_PX - focal * m) for n, m in zip(size, view.middle, strict=True)
-    )
-    x, y, z = view.turned(patches.points - view.eye.astype(np.float32))
-    drawn = (z > view.nearest_m) & (patches.points[:, 1] > -view.highest_m)
-    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        for place, end in ((focal * x / z + u0, size[0]), (focal * y / z + v0, size[1])):
-            drawn &= (place > _MARGIN_PX - LARGEST_PX) & (place < FINER * end + _MARGIN_PX + LARGEST_PX)
-    seen = np.flatnonzero(drawn)
-    x, y, z = x[seen], y[seen], z[seen]
-    corners = np.stack([focal * x / z + u0, focal * y / z + v0, z])
-
-    def along(side: Floats) -> Floats:
-        dx, dy, dz = view.turned(side[seen])
-        scale = focal / np.maximum(z + dz, np.float32(view.nearest_m))
-        ends = np.stack([scale * (x + dx) + u0, scale * (y + dy) + v0, z + dz])
-        return ends - corners
-
-    return seen.astype(np.uint64), corners, (along(patches.across), along(patches.down))
-
-
-def _averaged(uppermost: NDArray[np.uint64], colours: Picture, size: tuple[int, int]) -> Picture:
-    """The picture of the finer one's uppermost patches; what is half covered is closed."""
-    hit = uppermost < _NOTHING
-    fine = np.zeros((*hit.shape, 4), np.float32)
-    fine[hit, :3] = colours[uppermost[hit] & np.uint64(0xFFFFFFFF)]
-    fine[hit, 3] = 1.0
-    mean = cv2.resize(fine, size, interpolation=cv2.INTER_AREA)
-    covered = mean[..., 3:]
-    colour = mean[..., :3] / np.maximum(covered, 1e-6)
-    opaque = np.minimum(2 * covered, 1.0)
-    picture: Picture = np.rint(opaque * colour + (1 - opaque) * BACKGROUND).astype(np.uint8)
-    return picture
+    fine = FINER * np.array(size, np.float32)
+    corners = view.seen(patches.corners)
+    depth = corners[..., 2]
+    drawn = (depth > view.nearest_m).all(axis=1) & (patches.corners[..., 1] > -view.highest_m).all(axis=1)
+    corners, depth, colours = corners[drawn], depth[drawn].max(axis=1), patches.colours[drawn]
+    tangents = corners[..., :2] / corners[..., 2:] - np.array(view.middle, np.float32)
+    places = fine[0] / np.float32(view.width) * tangents + fine / 2
+    inside = ((places.max(axis=1) > 0) & (places.min(axis=1) < fine)).all(axis=1)
+    farthest_first = np.flatnonzero(inside)[np.argsort(-depth[inside], kind="stable")]
+    # OpenCV's (0, 0) is the middle of a pixel; what reaches far out is cut where nobody sees it.
+    shown = np.clip(places[farthest_first], -fine, 2 * fine) - 0.5
+    outlines = np.rint(shown * 2**_SUBPIXEL_BITS).astype(np.int32)
+    picture = np.full((int(fine[1]), int(fine[0]), 3), BACKGROUND, np.uint8)
+    for outline, colour in zip(outlines, colours[farthest_first].tolist(), strict=True):
+        cv2.fillConvexPoly(picture, outline, colour, shift=_SUBPIXEL_BITS)
+    averaged: Picture = cv2.resize(picture, size, interpolation=cv2.INTER_AREA)
+    return averaged

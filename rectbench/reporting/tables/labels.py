@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from rectbench.runs.run import Run
+from rectbench.plugins.figure import Part
 
 Place = tuple[str, str, str]
 
 
-def pair_labels(run: Run) -> dict[Place, str]:
+def pair_labels(run: Part) -> dict[Place, str]:
     """A label of each (scene, rig, motion): scene over rig; the motion where that leaves two alike."""
     places = list(dict.fromkeys(r.place for r in run.results))
     short = {place: f"{place[0]}\n{place[1]}" for place in places}

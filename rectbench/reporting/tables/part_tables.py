@@ -10,8 +10,9 @@ import numpy as np
 
 from rectbench.metrics.catalogue import DEPTH_KEYS, POSE_KEYS, ROW_KEYS, STAGES, column
 from rectbench.plugins.metric import Column
+from rectbench.reporting.asked import methods_part, wanted_figures
 from rectbench.reporting.charts.starts import SAME_MINIMUM, Starts, start_study, study_method
-from rectbench.reporting.page.run_facts import stated_seconds, wanted_kinds
+from rectbench.reporting.names import named
 from rectbench.reporting.tables.claims_tables import claims_tables
 from rectbench.reporting.tables.labels import one_line, pair_labels
 from rectbench.reporting.tables.numbers import MISSING, three_digits
@@ -23,9 +24,7 @@ from rectbench.reporting.tables.tabulation import (
     heading,
     is_ranked,
     main_tables,
-    methods_part,
     methods_table,
-    named,
     pair_tables,
     titled,
 )
@@ -46,7 +45,7 @@ def all_tables(run: Run) -> Iterator[Table]:
     for part in run.parts:
         if methods := methods_part(part):
             yield from _methods_tables(methods)
-        if "starts" in wanted_kinds(part) and (study := start_study(part, run)):
+        if "starts" in wanted_figures(part) and (study := start_study(part, run)):
             yield starts_table(part, study)
     if run.failures:
         yield failures_table(run)
@@ -66,7 +65,7 @@ def _methods_tables(part: Run) -> Iterator[Table]:
         yield depth_table(part)
     if "energy_convex_share" in part.metrics:
         yield energy_table(part)
-    if "timing" in wanted_kinds(part) and _measures(part, tuple(STAGES)):
+    if "timing" in wanted_figures(part) and _measures(part, tuple(STAGES)):
         yield timing_table(part)
     yield from pair_tables(part)
 
@@ -173,7 +172,7 @@ def _pose_row(
 def timing_table(run: Run) -> Table:
     """Seconds of each stage beside those somebody else stated."""
     stages = [key for key in STAGES if key in run.metrics]
-    stated = stated_seconds(run)
+    stated = run.stated_seconds
     sections = []
     for rig in run.rigs:
         rows = [_timing_row(run.select(rig=rig, method=m), m, stages) for m in run.methods]

@@ -6,7 +6,6 @@ A report of several parts has them for each part, under names that hold the part
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import product
@@ -21,7 +20,8 @@ from rectbench.metrics.catalogue import (
     column,
 )
 from rectbench.plugins.metric import Column
-from rectbench.reporting.page.run_facts import part_title, wanted_kinds
+from rectbench.reporting.asked import methods_part, part_title
+from rectbench.reporting.names import named
 from rectbench.reporting.tables.numbers import MISSING, three_digits
 from rectbench.reporting.tables.summaries import Summary, ranked, summarise
 from rectbench.reporting.tables.table import Entry, Heading, Section, Table, number, with_best
@@ -37,16 +37,6 @@ PARTIAL = (
 )
 
 
-def slug(*parts: str) -> str:
-    """A file's stem from names: lower case, hyphens, nothing a shell or LaTeX minds."""
-    return "-".join(filter(None, (re.sub(r"[^a-z0-9]+", "-", part.lower()).strip("-") for part in parts)))
-
-
-def named(run: Run, stem: str, *parts: str) -> str:
-    """A file's stem that holds the part's name, once."""
-    return slug(stem, "" if run.group == stem else run.group, *parts)
-
-
 def main_tables(run: Run) -> list[Table]:
     """Methods by key metrics, averaged over every pair; one table a part and pose."""
     return [
@@ -55,14 +45,6 @@ def main_tables(run: Run) -> list[Table]:
         if (methods := methods_part(part)) and is_ranked(methods)
         for pose in methods.poses
     ]
-
-
-def methods_part(part: Run) -> Run | None:
-    """A part without the starts that are studied in it: these are no methods to compare."""
-    if "starts" not in wanted_kinds(part):
-        return part
-    others = [r for r in part.results if not r.options]
-    return part.only(others) if others else None
 
 
 def is_ranked(run: Run) -> bool:

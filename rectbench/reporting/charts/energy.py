@@ -19,10 +19,11 @@ from rectbench.metrics.energy import (
     energy_slice,
     has_cubics,
 )
-from rectbench.reporting.sources import Sources, attempted
+from rectbench.plugins.figure import FigureData, Result, Sources
+from rectbench.reporting.pictures.pair_picture import PairPicture
+from rectbench.reporting.pictures.panels import attempted
 from rectbench.reporting.style import INK, PAGE_INCHES
 from rectbench.reporting.tables.numbers import three_digits
-from rectbench.runs.run import Result
 from rectbench.warps import Rectification
 
 if TYPE_CHECKING:
@@ -51,6 +52,43 @@ _TOP_RISES = 3.0
 """Height of the curves' panel, in rises of the median curve: steeper ones leave it, and the bowl shows."""
 
 
+class Energy(PairPicture):
+    """The energy about the fit of each method that has coefficients to vary."""
+
+    name = "energy"
+    topic = "Energy"
+    stem = "energy"
+    title = "Energy about the fit"
+    caption = (
+        "L over two coefficients with the others held (the left image's Ψᵤ, and Ψᵥ of both), and over each "
+        "alone, where the steepest leave the panel. A change of 100 % turns the slope at the far end of the "
+        "range by the mean slope. Hatched: not convex; grey: rows or columns would change places."
+    )
+    shown_as = "svg"
+
+    def draw(self, results: Sequence[Result], given: FigureData) -> Figure:
+        """A row a method whose maps are cubics: three slices as contours, and the curves.
+
+        Raises Unsupported with the reason where no method has a shape.
+        """
+        sources = given.sources
+        from matplotlib.figure import Figure
+
+        found = [attempted(r, lambda r=r: _shape(sources, r)) for r in results]  # type: ignore[misc]
+        shapes = [shape for shape in found if isinstance(shape, Shape)]
+        if not shapes:
+            raise Unsupported(f"no energy to show: {'; '.join(map(str, found))}")
+        figure = Figure(figsize=(PAGE_INCHES, 1.95 * len(shapes)), layout="constrained")
+        grid = figure.subplots(len(shapes), len(SLICES) + 1, squeeze=False, width_ratios=[1, 1, 1, 1.05])
+        for axes, shape in zip(grid, shapes, strict=True):
+            for ax, over in zip(axes, shape.slices, strict=False):
+                _draw_slice(ax, over)
+            _draw_curves(axes[-1], shape.curves)
+            if len(shapes) > 1:
+                axes[0].set_ylabel(f"{shape.method}\n{axes[0].get_ylabel()}")
+        return figure
+
+
 @dataclass(frozen=True)
 class Shape:
     """The slices and curves of one fit."""
@@ -58,28 +96,6 @@ class Shape:
     method: str
     slices: tuple[EnergySlice, ...]
     curves: tuple[EnergyCurve, ...]
-
-
-def draw_energy(sources: Sources, results: Sequence[Result]) -> Figure:
-    """A row a method whose maps are cubics: three slices as contours, and the curves.
-
-    Raises Unsupported with the reason where no method has a shape.
-    """
-    from matplotlib.figure import Figure
-
-    found = [attempted(r, lambda r=r: _shape(sources, r)) for r in results]  # type: ignore[misc]
-    shapes = [shape for shape in found if isinstance(shape, Shape)]
-    if not shapes:
-        raise Unsupported(f"no energy to show: {'; '.join(map(str, found))}")
-    figure = Figure(figsize=(PAGE_INCHES, 1.95 * len(shapes)), layout="constrained")
-    grid = figure.subplots(len(shapes), len(SLICES) + 1, squeeze=False, width_ratios=[1, 1, 1, 1.05])
-    for axes, shape in zip(grid, shapes, strict=True):
-        for ax, over in zip(axes, shape.slices, strict=False):
-            _draw_slice(ax, over)
-        _draw_curves(axes[-1], shape.curves)
-        if len(shapes) > 1:
-            axes[0].set_ylabel(f"{shape.method}\n{axes[0].get_ylabel()}")
-    return figure
 
 
 def _shape(sources: Sources, result: Result) -> Shape:

@@ -11,12 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rectbench.cameras import Camera
-from rectbench.reporting.pictures.panels import fit_into_box, panel_grid, write_head, write_message
-from rectbench.reporting.sources import Side, Sources, attempted
-from rectbench.reporting.style import LOST, PAGE_INCHES, looks, plain_log_ticks
+from rectbench.plugins.figure import FigureData, Result, Side, Sources
+from rectbench.reporting.pictures.pair_picture import PairPicture
+from rectbench.reporting.pictures.panels import attempted, fit_into_box, panel_grid, write_head, write_message
+from rectbench.reporting.style import LOST, PAGE_INCHES, plain_log_ticks
 from rectbench.reporting.tables.numbers import decade, three_digits
 from rectbench.rigs import Rig
-from rectbench.runs.run import Result
 from rectbench.types import FloatArray
 from rectbench.warps import Rectification
 
@@ -34,57 +34,70 @@ BEYOND = "#8c1d40"
 _SIDES: tuple[Side, Side] = ("left", "right")
 
 
+class DistortionMaps(PairPicture):
+    """Where in the image each method distorts: L of every pixel, in colours."""
+
+    name = "maps"
+    topic = "Pictures"
+    usual = 4
+    stem = "distortion-map"
+    title = "Distortion maps"
+    caption = (
+        "Native L of every pixel of both source images, one scale for all methods. The number is L over "
+        "the 500 pixels that the tables measure it at."
+    )
+
+    def draw(self, results: Sequence[Result], given: FigureData) -> Figure:
+        """A panel a method, left and right image in it, three panels to a row."""
+        sources, looks = given.sources, given.looks
+        from matplotlib.cm import ScalarMappable
+        from matplotlib.colors import LogNorm
+        from matplotlib.patches import Patch
+
+        rig = sources.pair(results[0]).rig
+        panels = [
+            (r, attempted(r, lambda r=r: _maps(sources, r, rig)))  # type: ignore[misc]
+            for r in results
+        ]
+        shown = [m for _, maps in panels if not isinstance(maps, str) for m in maps]
+        bottom, top = _limits(shown)
+        norm = LogNorm(bottom, top)
+        camera = rig.left
+        figure, axes = panel_grid(len(panels), 3, camera.height / ((2 + _GAP) * camera.width), _BAR_INCHES)
+        for ax, (result, maps) in zip(axes, panels, strict=True):
+            colour, native = looks[result.method].colour, result.metrics.get("distortion_native")
+            if isinstance(maps, str):
+                write_message(ax, maps, 46)
+                write_head(ax, result.method, colour=colour)
+            else:
+                _draw_panel(ax, maps, norm)
+                write_head(ax, result.method, "" if native is None else f"L = {three_digits(native)}", colour)
+        bar_ax = figure.add_axes((1 - 0.85 * _BAR_INCHES / PAGE_INCHES, 0.1, 0.1 / PAGE_INCHES, 0.68))
+        bar = figure.colorbar(ScalarMappable(norm, _shades()), cax=bar_ax, extend="both")
+        plain_log_ticks(bar_ax.yaxis)
+        bar.set_label("distortion L")
+        bar.outline.set_linewidth(0.4)
+        if any((m.values > top).any() for m in shown):
+            bar_ax.annotate(
+                f"> {decade(top)}",
+                (0, 1.05),
+                xycoords="axes fraction",
+                xytext=(0, 4),
+                textcoords="offset points",
+                size=6.5,
+            )
+        if any(np.isnan(m.values[m.lens]).any() for m in shown):
+            patch = Patch(facecolor=LOST, label="not mapped")
+            figure.legend(handles=[patch], loc="lower right", borderaxespad=0, fontsize=6)
+        return figure
+
+
 @dataclass(frozen=True)
 class SideMap:
     """L on a grid [h, w] of one image, NaN where lost; and where the lens shows anything."""
 
     values: FloatArray
     lens: NDArray[np.bool_]
-
-
-def draw_distortion_maps(sources: Sources, results: Sequence[Result], methods: Sequence[str]) -> Figure:
-    """A panel a method, left and right image in it, three panels to a row."""
-    from matplotlib.cm import ScalarMappable
-    from matplotlib.colors import LogNorm
-    from matplotlib.patches import Patch
-
-    rig = sources.pair(results[0]).rig
-    panels = [
-        (r, attempted(r, lambda r=r: _maps(sources, r, rig)))  # type: ignore[misc]
-        for r in results
-    ]
-    shown = [m for _, maps in panels if not isinstance(maps, str) for m in maps]
-    bottom, top = _limits(shown)
-    norm = LogNorm(bottom, top)
-    camera = rig.left
-    figure, axes = panel_grid(len(panels), 3, camera.height / ((2 + _GAP) * camera.width), _BAR_INCHES)
-    colours = looks(methods)
-    for ax, (result, maps) in zip(axes, panels, strict=True):
-        colour, native = colours[result.method][0], result.metrics.get("distortion_native")
-        if isinstance(maps, str):
-            write_message(ax, maps, 46)
-            write_head(ax, result.method, colour=colour)
-        else:
-            _draw_panel(ax, maps, norm)
-            write_head(ax, result.method, "" if native is None else f"L = {three_digits(native)}", colour)
-    bar_ax = figure.add_axes((1 - 0.85 * _BAR_INCHES / PAGE_INCHES, 0.1, 0.1 / PAGE_INCHES, 0.68))
-    bar = figure.colorbar(ScalarMappable(norm, _shades()), cax=bar_ax, extend="both")
-    plain_log_ticks(bar_ax.yaxis)
-    bar.set_label("distortion L")
-    bar.outline.set_linewidth(0.4)
-    if any((m.values > top).any() for m in shown):
-        bar_ax.annotate(
-            f"> {decade(top)}",
-            (0, 1.05),
-            xycoords="axes fraction",
-            xytext=(0, 4),
-            textcoords="offset points",
-            size=6.5,
-        )
-    if any(np.isnan(m.values[m.lens]).any() for m in shown):
-        patch = Patch(facecolor=LOST, label="not mapped")
-        figure.legend(handles=[patch], loc="lower right", borderaxespad=0, fontsize=6)
-    return figure
 
 
 def _shades() -> Colormap:

@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 
 from rectbench.images.stereo_pair import StereoPair
 from rectbench.metrics.catalogue import column
-from rectbench.reporting.pictures.panels import fit_into_box, panel_grid, write_head, write_message
-from rectbench.reporting.sources import Sources, attempted
-from rectbench.reporting.style import PAGE_INCHES, looks
+from rectbench.plugins.figure import FigureData, Result, Sources
+from rectbench.reporting.pictures.pair_picture import PairPicture
+from rectbench.reporting.pictures.panels import attempted, fit_into_box, panel_grid, write_head, write_message
+from rectbench.reporting.style import PAGE_INCHES
 from rectbench.reporting.tables.numbers import shown
-from rectbench.runs.run import Result
 from rectbench.types import FloatArray, Matches
 from rectbench.warps import Rectification
 
@@ -35,6 +35,55 @@ _ERRORS = ("row_error_mean_px", "row_error_board_mean_px", "row_error_features_m
 _RING_SHARE = 0.025
 _GAP = 0.012
 Image = NDArray[np.generic]
+
+
+_CAPTION = (
+    "Scan lines run through {points} (rings): on a rectified pair both rings lie on the line, and both boxes "
+    "between the dashed ones. Each pair is fitted to its panel: sizes do not compare from one method to the "
+    "next."
+)
+
+
+class RectifiedPairs(PairPicture):
+    """Rectified pairs side by side, with scan lines through what corresponds."""
+
+    name = "pairs"
+    topic = "Pictures"
+    needs = frozenset({"images"})
+    usual = 3
+    stem = "rectified"
+    title = "Rectified pairs"
+    caption = _CAPTION.format(points="true correspondences")
+    caption_of_photographs = _CAPTION.format(
+        points="matches found in the images and corners of a board, if they show one"
+    )
+    dpi = PIXELS_PER_INCH
+
+    def draw(self, results: Sequence[Result], given: FigureData) -> Figure:
+        """The originals, then each method's rectified pair, two pairs to a row.
+
+        Raises whatever the sources raise for the pair itself; a method that fails shows why in its place.
+        """
+        sources, looks = given.sources, given.looks
+        known = sources.pair(results[0])
+        pair, marks = known.images, _marks(known.shown_matches(), known.images)
+        panels: list[tuple[str, Panel | str]] = [("", Panel("", pair.left, pair.right, marks))]
+        panels += [
+            (r.method, attempted(r, lambda r=r: _panel(sources, r, pair, marks)))  # type: ignore[misc]
+            for r in results
+        ]
+        height, width = pair.left.shape[:2]
+        figure, axes = panel_grid(len(panels), 2, height / ((2 + _GAP) * width))
+        for ax, (method, panel) in zip(axes, panels, strict=True):
+            if isinstance(panel, Panel):
+                _draw_panel(ax, panel)
+                write_head(
+                    ax, method or "source images", panel.note, looks[method].colour if method else None
+                )
+            else:
+                write_message(ax, panel, 70)
+                write_head(ax, method, colour=looks[method].colour)
+        return figure
 
 
 @dataclass(frozen=True)
@@ -61,31 +110,6 @@ class Panel:
     left: Image
     right: Image
     shown: Shown
-
-
-def draw_rectified(sources: Sources, results: Sequence[Result], methods: Sequence[str]) -> Figure:
-    """The originals, then each method's rectified pair, two pairs to a row.
-
-    Raises whatever the sources raise for the pair itself; a method that fails shows why in its place.
-    """
-    known = sources.pair(results[0])
-    pair, marks = known.images, _marks(known.shown_matches(), known.images)
-    panels: list[tuple[str, Panel | str]] = [("", Panel("", pair.left, pair.right, marks))]
-    panels += [
-        (r.method, attempted(r, lambda r=r: _panel(sources, r, pair, marks)))  # type: ignore[misc]
-        for r in results
-    ]
-    height, width = pair.left.shape[:2]
-    figure, axes = panel_grid(len(panels), 2, height / ((2 + _GAP) * width))
-    colours = looks(methods)
-    for ax, (method, panel) in zip(axes, panels, strict=True):
-        if isinstance(panel, Panel):
-            _draw_panel(ax, panel)
-            write_head(ax, method or "source images", panel.note, colours[method][0] if method else None)
-        else:
-            write_message(ax, panel, 70)
-            write_head(ax, method, colour=colours[method][0])
-    return figure
 
 
 def _panel(sources: Sources, result: Result, pair: StereoPair, marks: Shown) -> Panel:
