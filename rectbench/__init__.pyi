@@ -35,6 +35,10 @@ from .matching import sampson_residuals as sampson_residuals
 from .matching import sift_matches as sift_matches
 from .plugins.homography import HomographyRectifier as HomographyRectifier
 from .plugins.homography import PinholeView as PinholeView
+from .plugins.metric import Case as Case
+from .plugins.metric import Column as Column
+from .plugins.metric import Metric as Metric
+from .plugins.metric import Tolerance as Tolerance
 from .plugins.rectifier import Options as Options
 from .plugins.rectifier import Problem as Problem
 from .plugins.rectifier import Rectifier as Rectifier

@@ -8,14 +8,14 @@ import typer
 
 from rectbench.errors import UnknownName
 
-KINDS = ("methods", "scenes", "rigs", "motions", "poses", "reports", "formats")
+KINDS = ("methods", "scenes", "rigs", "motions", "poses", "metrics", "reports", "formats")
 
 
 def list_(
     kind: Annotated[str | None, typer.Argument(metavar="KIND", help=f"One of {', '.join(KINDS)}.")] = None,
     verbose: Annotated[bool, typer.Option("--verbose", "-v", help="With options and references.")] = False,
 ) -> None:
-    """List methods, scenes, rigs, motions, poses and reports, and the plugins that cannot be loaded."""
+    """List methods, scenes, rigs, motions, poses, metrics and reports, and plugins that cannot be loaded."""
     from rectbench.cli import printing as terminal
 
     if kind is not None and kind not in KINDS:

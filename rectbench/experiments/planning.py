@@ -12,6 +12,7 @@ from rectbench.calibrations import load_rig, rig_names
 from rectbench.errors import InvalidInput, UnknownName
 from rectbench.experiments.spec import ESTIMATED, REPORTS, Group, PairName, Report
 from rectbench.experiments.tasks import Cell, CellTask
+from rectbench.metrics.scoring import metrics_of
 from rectbench.pairs.finding.photographs import Photographs, find_photographs
 from rectbench.pairs.spec import AS_CALIBRATED, PairSpec, PhotographedSpec, RenderedSpec
 from rectbench.plugins.fitting import checked_options
@@ -160,7 +161,7 @@ def _tasks_of(
                     pair=pair,
                     method_source=method_source,
                     options=options,
-                    metrics=report.metrics_of(part),
+                    metrics=tuple(metrics_of(report.metrics_of(part))),
                     match_count=report.match_count,
                     match_noise_px=report.match_noise_px,
                     group=part.name,

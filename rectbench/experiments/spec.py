@@ -9,21 +9,9 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
 
 from rectbench.experiments.claims import Claim
+from rectbench.metrics.scoring import metrics_of, needs_of
 from rectbench.registry.kind import Described, Kind
 
-Metric = Literal[
-    "distortion",
-    "geometry",
-    "row_error",
-    "row_error_features",
-    "row_error_board",
-    "reconstruction",
-    "energy",
-    "timing",
-]
-"""Distortion at the grid alone; all of distortion, coverage and order; row error of the truth, of SIFT
-matches in the images, and of a calibration board's corners where they show one; depth from dense matching;
-the shape of the energy; times."""
 Figures = Literal["bars", "scatter", "pairs", "maps", "energy", "starts", "squares", "clouds", "timing"]
 Names = Annotated[tuple[str, ...], Field(min_length=1)]
 Slug = Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9-]*$")]
@@ -39,8 +27,6 @@ def _one_set_is_a_list_of_one(options: Any) -> Any:
 
 OptionSets = Annotated[Mapping[str, tuple[dict[str, Any], ...]], BeforeValidator(_one_set_is_a_list_of_one)]
 
-IMAGE_METRICS = frozenset({"row_error_features", "row_error_board", "reconstruction"})
-TRUTH_METRICS = frozenset({"row_error", "reconstruction"})
 IMAGE_FIGURES = frozenset({"pairs", "clouds"})
 ESTIMATED = "estimated"
 """The pose that is estimated from the images themselves."""
@@ -58,7 +44,7 @@ class Group(BaseModel):
     pairs: tuple[PairName, ...] = Field(description="The pairs: (scene, rig, motion) each, by name or path.")
     methods: Names = Field(description="Rectifiers, by name or path.")
     options: OptionSets = Field(default_factory=dict, description="As a report's.")
-    metrics: tuple[Metric, ...] | None = Field(default=None, description="In the place of the report's.")
+    metrics: tuple[str, ...] | None = Field(default=None, description="In the place of the report's.")
     figures: tuple[Figures, ...] | None = Field(default=None, description="In the place of the report's.")
     seeds: Annotated[tuple[int, ...], Field(min_length=1)] | None = Field(
         default=None, description="In the place of the report's."
@@ -115,9 +101,10 @@ class Report(BaseModel):
         default="path", description="Path tracing, or the fast integrator."
     )
     spp: int = Field(default=64, ge=1, description="Samples a pixel.")
-    metrics: tuple[Metric, ...] = Field(
+    metrics: tuple[str, ...] = Field(
         default=("geometry", "row_error", "timing"),
-        description="What is measured. Nothing is rendered or computed that none of these asks for.",
+        description="What is measured: metrics, by name or path. `geometry` is all that needs neither image "
+        "nor match. Nothing is rendered or computed that none of these asks for.",
     )
     match_count: int = Field(
         default=1000, ge=8, description="Matches given to the rectifiers that need them."
@@ -167,8 +154,9 @@ class Report(BaseModel):
     @model_validator(mode="after")
     def _photographs_have_no_truth(self) -> Report:
         if self.photographs:
-            if asked := sorted(TRUTH_METRICS.intersection(self.metrics)):
-                raise ValueError(f"metric {asked[0]} needs the truth, which photographs have not")
+            for plugin in metrics_of(self.metrics).values():
+                if "truth" in plugin.value.needs:
+                    raise ValueError(f"metric {plugin.name} needs the truth, which photographs have not")
             if foreign := [pose for pose in self.poses if pose not in (CALIBRATED, ESTIMATED)]:
                 raise ValueError(f"pose of photographs is {foreign[0]}; expected {CALIBRATED} or {ESTIMATED}")
         return self
@@ -214,7 +202,7 @@ class Report(BaseModel):
         """The seeds of all parts."""
         return tuple(dict.fromkeys(seed for part in self.parts for seed in self.seeds_of(part)))
 
-    def metrics_of(self, part: Group) -> tuple[Metric, ...]:
+    def metrics_of(self, part: Group) -> tuple[str, ...]:
         """What is measured in a part."""
         return self.metrics if part.metrics is None else part.metrics
 
@@ -235,14 +223,14 @@ class Report(BaseModel):
         figures = self.figures_of(part)
         return (
             ESTIMATED in self.poses
-            or not IMAGE_METRICS.isdisjoint(self.metrics_of(part))
+            or "images" in needs_of(self.metrics_of(part))
             or figures is None
             or not IMAGE_FIGURES.isdisjoint(figures)
         )
 
     def needs_truth(self, part: Group) -> bool:
         """Whether any metric of a part asks for the truth."""
-        return not TRUTH_METRICS.isdisjoint(self.metrics_of(part))
+        return "truth" in needs_of(self.metrics_of(part))
 
 
 def _distinct(names: Iterable[str]) -> tuple[str, ...]:

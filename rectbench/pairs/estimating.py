@@ -13,7 +13,6 @@ from rectbench.images.stereo_pair import StereoPair
 from rectbench.matching import PoseEstimate, pose_from_images
 from rectbench.pairs.pairs import image_inputs, load_images, placed_rig
 from rectbench.pairs.spec import PairSpec
-from rectbench.rigs import Rig
 from rectbench.store.keys import Inputs, code_digest, derived_seed, versions
 from rectbench.store.store import Store
 from rectbench.types import Images, Matches
@@ -51,25 +50,6 @@ def estimated_pose(pair: PairSpec, store: Store) -> PoseEstimate:
     if (folder / REASON).is_file():
         raise PoseNotFound(json.loads((folder / REASON).read_text(encoding="utf-8"))["reason"])
     return _load(folder / NUMBERS)
-
-
-def pose_columns(estimate: PoseEstimate, truth: Rig) -> dict[str, float]:
-    """The columns of a row that tell how good the estimate is, and how good it believes to be."""
-    rotation_deg, direction_deg = estimate.difference_deg(truth)
-    return {
-        "pose_rotation_error_deg": rotation_deg,
-        "pose_direction_error_deg": direction_deg,
-        "pose_rotation_sigma_deg": estimate.rotation_sigma_deg,
-        "pose_direction_sigma_deg": estimate.direction_sigma_deg,
-        "pose_inliers": float(len(estimate.inliers.left)),
-        "pose_matches": float(estimate.given),
-    }
-
-
-def calibration_columns(estimate: PoseEstimate, calibrated: Rig) -> dict[str, float]:
-    """The same of photographs: how far the estimate is from the calibration; neither is the truth."""
-    columns = pose_columns(estimate, calibrated)
-    return {name.replace("_error_deg", "_difference_deg"): value for name, value in columns.items()}
 
 
 def _inputs(pair: PairSpec) -> Inputs:

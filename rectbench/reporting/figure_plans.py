@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from rectbench.metrics.catalogue import PROTOCOLS, ROW_ERRORS, STAGES, column
+from rectbench.metrics.catalogue import column
 from rectbench.reporting.charts.bars import BarChart, bar_chart, draw_bars, pair_chart, stage_chart
 from rectbench.reporting.charts.energy_curves import draw_energy
 from rectbench.reporting.charts.scatter import draw_scatter, scatter
@@ -71,17 +71,19 @@ def _bar_plans(run: Run) -> Iterator[Plan]:
 
 def _pair_bar_plans(run: Run) -> Iterator[Plan]:
     """Of a part: all ways to measure a thing side by side, its pairs along the axis."""
-    if any(key in run.metrics for key in ROW_ERRORS):
+    row_errors = run.catalogue.panels("Row error")
+    if any(key in run.metrics for key in row_errors):
         for pose in run.noisy_poses:
-            chart = pair_chart(run, "row error [px]", ROW_ERRORS, pose, reference=1.0)
+            chart = pair_chart(run, "row error [px]", row_errors, pose, reference=1.0)
             name = named(run, "row-error", pose if len(run.noisy_poses) > 1 else "")
             caption = "Mean row error on each pair, measured in the images" + (
                 "." if run.is_of_photographs else " and against the truth."
             )
             yield _bars(run, chart, name, f"Row error, {pose} pose", caption)
     pose = run.geometric_pose
-    if any(key in run.metrics for key in PROTOCOLS):
-        chart = pair_chart(run, "distortion L", PROTOCOLS, pose, bounded=_BOUNDED)
+    protocols = run.catalogue.panels("Distortion")
+    if any(key in run.metrics for key in protocols):
+        chart = pair_chart(run, "distortion L", protocols, pose, bounded=_BOUNDED)
         caption = "The paper's distortion L on each pair, under each protocol."
         if chart.linear:
             caption += " Rescaled and stretched have a linear axis from 0."
@@ -121,12 +123,13 @@ def _scatter_plans(run: Run) -> Iterator[Plan]:
 
 
 def _timing_plans(run: Run) -> Iterator[Plan]:
-    if not any(key in run.metrics for key in STAGES):
+    stages = run.catalogue.panels("Time")
+    if not any(key in run.metrics for key in stages):
         return
     stated = stated_seconds(run)
     if stated:
         stated["total"] = sum(stated.values())
-    chart = stage_chart(run, STAGES, stated)
+    chart = stage_chart(run, stages, stated)
     caption = "Seconds of each stage, tables being part of the warp" + (
         "; the lines are stated, not measured here." if stated else "."
     )

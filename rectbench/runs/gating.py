@@ -8,76 +8,28 @@ from __future__ import annotations
 
 import json
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 import pandas as pd
 
 from rectbench.errors import InvalidInput, UnknownName
-from rectbench.runs.record import read_facts, read_results
 from rectbench.experiments.spec import ESTIMATED, REPORTS
 from rectbench.experiments.tasks import IDENTITY
+from rectbench.metrics.catalogue import catalogue_of
+from rectbench.plugins.metric import Column
 from rectbench.registry import registry
+from rectbench.runs.record import read_facts, read_results
 
 KEY = [name for name in IDENTITY if name != "report"]
 
 GOOD, REGRESSION, INCOMPLETE = 0, 1, 3
 
 
-@dataclass(frozen=True)
-class Tolerance:
-    """How far a column may be worse than accepted: by `relative` of the accepted value, plus `absolute`."""
-
-    better: Literal["lower", "higher"]
-    relative: float
-    absolute: float
-
-    def change(self, accepted: float, now: float) -> Literal["same", "better", "worse"]:
-        """How `now` stands to `accepted`; a number that is no longer there is worse."""
-        if math.isnan(accepted) or math.isnan(now):
-            if math.isnan(accepted) and math.isnan(now):
-                return "same"
-            return "worse" if math.isnan(now) else "better"
-        if accepted == now:
-            return "same"  # infinities too
-        if math.isfinite(accepted) and abs(now - accepted) <= self.relative * abs(accepted) + self.absolute:
-            return "same"
-        return "better" if (now < accepted) == (self.better == "lower") else "worse"
-
-
-GATED: dict[str, Tolerance] = {
-    "row_error_mean_px": Tolerance("lower", 0.02, 1e-6),
-    "row_error_p95_px": Tolerance("lower", 0.05, 1e-6),
-    "row_error_source_mean_px": Tolerance("lower", 0.02, 1e-6),
-    "row_error_board_mean_px": Tolerance("lower", 0.05, 0.01),
-    "row_error_features_mean_px": Tolerance("lower", 0.1, 0.02),
-    "distortion_native": Tolerance("lower", 0.01, 1e-6),
-    "distortion_rescaled": Tolerance("lower", 0.01, 1e-6),
-    "distortion_stretched": Tolerance("lower", 0.01, 1e-6),
-    "log_distortion": Tolerance("lower", 0.01, 1e-6),
-    "coverage_pixels": Tolerance("higher", 0.0, 0.002),
-    "coverage_solid_angle": Tolerance("higher", 0.0, 0.002),
-    "closure_px": Tolerance("lower", 0.0, 1e-6),
-    "reconstruction_completeness": Tolerance("higher", 0.0, 0.01),
-    "pose_rotation_error_deg": Tolerance("lower", 0.05, 0.002),
-    "pose_direction_error_deg": Tolerance("lower", 0.05, 0.01),
-}
-"""The gated columns. Relative where rounding and libraries move the last digits of a fit; features hang
-on the detector's version most of all."""
-
 ESTIMATED_SLACK = 10.0
 """How many times as far off a column may be where the pose was found in the images: a feature more or less,
 and all that follows from the pose moves a little."""
-
-
-def tolerance_for(column: str, pose: str) -> Tolerance:
-    """How far a column may be worse than accepted, given where the pose came from."""
-    tolerance = GATED[column]
-    if pose != ESTIMATED:
-        return tolerance
-    wider = replace(tolerance, relative=ESTIMATED_SLACK * tolerance.relative)
-    return replace(wider, absolute=ESTIMATED_SLACK * tolerance.absolute)
 
 
 @dataclass
@@ -120,12 +72,13 @@ def accept(run_dir: Path, path: Path) -> int:
 
     Raises InvalidInput for a run that measured nothing or was no whole run of its report.
     """
-    table = read_results(run_dir)
+    table, facts = read_results(run_dir), read_facts(run_dir)
     if not (table["status"] == "ok").any():
         raise InvalidInput(f"{run_dir} measured nothing; there is nothing to accept")
-    if not read_facts(run_dir).get("is_whole"):
+    if not facts.get("is_whole"):
         raise InvalidInput(f"{run_dir} is a part of its report; expected a run without a selection")
-    columns = [name for name in GATED if name in table and table[name].notna().any()]
+    gated = [column.key for column in catalogue_of(facts.get("columns")).gated]
+    columns = [name for name in gated if name in table and table[name].notna().any()]
     unfinished = path.with_name(f".{path.name}.unfinished")
     try:
         table[[*KEY, "status", *columns]].to_csv(unfinished, index=False, float_format="%.9g")
@@ -141,19 +94,21 @@ def gate(run_dir: Path, path: Path) -> Verdict:
     Raises InvalidInput where either cannot be read.
     """
     run, accepted = _by_key(read_results(run_dir)), _by_key(_read_accepted(path))
-    is_whole = bool(read_facts(run_dir).get("is_whole"))
-    verdict = Verdict()
+    facts, verdict = read_facts(run_dir), Verdict()
+    is_whole, gated = bool(facts.get("is_whole")), catalogue_of(facts.get("columns")).gated
     for key, known in accepted.items():
         if key not in run:
             missing = verdict.regressions if is_whole else verdict.incomplete
             missing.append(f"{_name(key)}: the cell is missing")
             continue
-        _compare(_name(key), known, run[key], verdict)
+        _compare(_name(key), known, run[key], gated, verdict)
     verdict.new += [f"{_name(key)}: no accepted numbers" for key in run if key not in accepted]
     return verdict
 
 
-def _compare(cell: str, known: dict[str, Any], now: dict[str, Any], verdict: Verdict) -> None:
+def _compare(
+    cell: str, known: dict[str, Any], now: dict[str, Any], gated: list[Column], verdict: Verdict
+) -> None:
     if known["status"] != now["status"]:
         kind = verdict.improvements if now["status"] == "ok" else verdict.regressions
         because = f" ({now['reason']})" if now.get("reason") else ""
@@ -162,13 +117,13 @@ def _compare(cell: str, known: dict[str, Any], now: dict[str, Any], verdict: Ver
     if now["status"] != "ok":
         return
     verdict.compared += 1
-    for column in (name for name in GATED if name in known):
-        tolerance = tolerance_for(column, known["pose"])
-        accepted, value = float(known[column]), float(now.get(column, math.nan))
-        change = tolerance.change(accepted, value)
+    slack = ESTIMATED_SLACK if known["pose"] == ESTIMATED else 1.0
+    for column in (column for column in gated if column.key in known):
+        accepted, value = float(known[column.key]), float(now.get(column.key, math.nan))
+        change = column.change(accepted, value, slack)
         if change != "same":
             kind = verdict.improvements if change == "better" else verdict.regressions
-            kind.append(f"{cell}: {column} {accepted:.6g} -> {value:.6g}")
+            kind.append(f"{cell}: {column.key} {accepted:.6g} -> {value:.6g}")
 
 
 def _read_accepted(path: Path) -> pd.DataFrame:

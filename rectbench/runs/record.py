@@ -20,7 +20,10 @@ from rectbench.errors import InvalidInput, Unavailable
 from rectbench.experiments.execution.outcomes import Outcome
 from rectbench.experiments.planning import Plan
 from rectbench.experiments.tasks import IDENTITY
+from rectbench.metrics.catalogue import catalogue_of, stored_columns
+from rectbench.metrics.scoring import metrics_of
 from rectbench.pairs.finding.photographs import UNREADABLE
+from rectbench.registry import is_path
 from rectbench.store.closure import PACKAGE
 from rectbench.store.keys import canonical_json, versions
 
@@ -41,38 +44,26 @@ PACKAGES = (
     "karellen-llvm-core",
 )
 
-PROMISED = (
-    "row_error_mean_px",
-    "row_error_median_px",
-    "row_error_p95_px",
-    "row_error_max_px",
-    "row_error_below_1px",
-    "row_error_features_mean_px",
-    "distortion_native",
-    "distortion_rescaled",
-    "distortion_stretched",
-    "log_distortion",
-    "coverage_pixels",
-    "coverage_solid_angle",
-    "valid_output",
-    "fit_s",
-    "maps_s",
-    "warp_s",
-)
-"""Columns that are always there, empty where the report does not measure them."""
-
-
 def table_of(plan: Plan, outcomes: Sequence[Outcome]) -> pd.DataFrame:
     """One row a cell, in the plan's order: identity, status, reason, metrics, notes."""
     rows = []
     for task, outcome in zip(plan.tasks, outcomes, strict=True):
         ended = {"status": outcome.status, "reason": outcome.reason}
         notes = json.dumps(dict(outcome.notes), sort_keys=True, default=str)
-        rows.append({**task.cell.model_dump(), **ended, "group": task.group, **outcome.metrics, "notes": notes})
-    measured = dict.fromkeys(name for outcome in outcomes for name in outcome.metrics)
-    metrics = [*PROMISED, *(name for name in measured if name not in PROMISED)]
+        rows.append(
+            {**task.cell.model_dump(), **ended, "group": task.group, **outcome.metrics, "notes": notes}
+        )
+    catalogue = catalogue_of(_foreign_columns(plan))
+    measured = {name for outcome in outcomes for name in outcome.metrics}
+    metrics = catalogue.in_display_order(measured.union(catalogue.promised))
     table = pd.DataFrame(rows, columns=[*LEADING, "group", *metrics, "notes"])
     return table.astype({**dict.fromkeys(metrics, "float64"), "seed": "int64"})
+
+
+def _foreign_columns(plan: Plan) -> dict[str, Any]:
+    """The columns of metrics that are given by their files, which may be gone when the run is read."""
+    asked = dict.fromkeys(name for task in plan.tasks for name in task.metrics if is_path(name))
+    return stored_columns(plugin.value for plugin in metrics_of(asked).values())
 
 
 def facts_of(plan: Plan) -> dict[str, Any]:
@@ -94,6 +85,7 @@ def facts_of(plan: Plan) -> dict[str, Any]:
         "is_whole": plan.is_whole,
         "spec": plan.report.model_dump(mode="json"),
         "figures": plan.report.figures,
+        "columns": _foreign_columns(plan),
         **_photograph_facts(plan),
         "cells": [task.model_dump(mode="json") for task in plan.tasks],
     }

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from rectbench.errors import InvalidInput
-from rectbench.metrics.catalogue import in_display_order
+from rectbench.metrics.catalogue import Catalogue, catalogue_of
 
 IDENTITY = ("report", "scene", "rig", "motion", "pose", "method", "options", "seed", "status", "reason")
 """The columns that say which cell a row is and how it ended; all other numbers are metrics."""
@@ -103,7 +103,12 @@ class Run:
     @cached_property
     def metrics(self) -> tuple[str, ...]:
         """Metrics measured in at least one cell, in the order of display."""
-        return tuple(in_display_order({key for r in self.results for key in r.metrics}))
+        return tuple(self.catalogue.in_display_order({key for r in self.results for key in r.metrics}))
+
+    @cached_property
+    def catalogue(self) -> Catalogue:
+        """What is known of its columns: by the metrics of this machine, else by run.json."""
+        return catalogue_of(self.facts.get("columns"))
 
     @property
     def is_of_photographs(self) -> bool:

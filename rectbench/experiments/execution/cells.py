@@ -3,28 +3,19 @@
 from __future__ import annotations
 
 import json
-import time
-from collections.abc import Callable
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import TypeVar
 
-import numpy as np
-
-from rectbench.errors import InvalidInput, PoseNotFound
+from rectbench.errors import InvalidInput
 from rectbench.experiments.execution.outcomes import LASTING, Outcome, outcome_of
-from rectbench.experiments.spec import CALIBRATED, ESTIMATED, IMAGE_METRICS
+from rectbench.experiments.spec import CALIBRATED, ESTIMATED
 from rectbench.experiments.tasks import CellTask
-from rectbench.matching import BoardMatches, agreeing_matches, board_matches, reconstruct
-from rectbench.metrics import (
-    Jacobians,
-    distortion_columns,
-    energy_convex_share,
-    measure,
-    reconstruction_scores,
-)
-from rectbench.pairs.estimating import calibration_columns, estimate_from_images, estimated_pose, pose_columns
+from rectbench.images.stereo_pair import StereoPair
+from rectbench.matching import BoardMatches, PoseEstimate, agreeing_matches, board_matches
+from rectbench.metrics.scoring import digests_of, needs_of, score
+from rectbench.metrics.timing import timed, warm_seconds
+from rectbench.pairs.estimating import estimate_from_images, estimated_pose
 from rectbench.pairs.features import scored_features
 from rectbench.pairs.pairs import (
     give_memory_back,
@@ -36,7 +27,8 @@ from rectbench.pairs.pairs import (
     truth_inputs,
 )
 from rectbench.pairs.spec import PairSpec, PhotographedSpec, RenderedSpec
-from rectbench.plugins.fitting import check_result, checked_options, fit
+from rectbench.plugins.fitting import check_result, checked_options
+from rectbench.plugins.metric import Case
 from rectbench.plugins.rectifier import METHODS, Problem, pose_problem
 from rectbench.registry import registry
 from rectbench.rendering.truth import Truth
@@ -45,7 +37,6 @@ from rectbench.rigs.poses import POSES, perturb
 from rectbench.store.keys import Inputs, code_digest, derived_seed, versions
 from rectbench.store.store import Store
 from rectbench.types import Images, Matches
-from rectbench.warps import Rectification
 
 CELLS = "cells"
 ROW = "row.json"
@@ -53,11 +44,6 @@ MEASURING_PACKAGES = ("numpy", "scipy", "opencv-contrib-python-headless", "drjit
 
 SCORED_MATCHES = 10_000
 """Correspondences the row error is taken over."""
-
-REPEATS = 3
-SLOW_CALL_S = 1.0
-
-Result = TypeVar("Result")
 
 
 def cell_inputs(task: CellTask) -> Inputs:
@@ -70,7 +56,7 @@ def cell_inputs(task: CellTask) -> Inputs:
         "method": method.name,
         "method_source": method.digest,
         "options": checked_options(method, task.options).model_dump(mode="json"),
-        "metrics": sorted(task.metrics),
+        "metrics": digests_of(task.metrics),
         "match_count": task.match_count,
         "match_noise_px": task.match_noise_px,
         "code": code_digest(__name__),
@@ -81,7 +67,7 @@ def cell_inputs(task: CellTask) -> Inputs:
 def uses_images(task: CellTask) -> bool:
     """Whether the row of a cell hangs on its images, as that of photographs always does."""
     needs = registry(METHODS).get(task.method_source).value.needs
-    asked = "images" in needs or task.cell.pose == ESTIMATED or not IMAGE_METRICS.isdisjoint(task.metrics)
+    asked = "images" in needs | needs_of(task.metrics) or task.cell.pose == ESTIMATED
     return asked or isinstance(task.pair, PhotographedSpec)
 
 
@@ -197,95 +183,68 @@ def _truth(pair: PairSpec, store: Store) -> Truth:
     return load_truth(pair, store)
 
 
+@dataclass(frozen=True)
+class _Known:
+    """What is known of a pair, for its metrics."""
+
+    pair: PairSpec
+    store: Store
+
+    @property
+    def rig(self) -> Rig:
+        return placed_rig(self.pair)
+
+    @property
+    def has_truth(self) -> bool:
+        return not isinstance(self.pair, PhotographedSpec)
+
+    @property
+    def images(self) -> StereoPair:
+        return load_images(self.pair, self.store)
+
+    @property
+    def truth(self) -> Truth:
+        return _truth(self.pair, self.store)
+
+    @property
+    def true_matches(self) -> Matches:
+        return _true_matches(self.pair, self.store)
+
+    @property
+    def board(self) -> BoardMatches | None:
+        return corners_of_board(self.pair, self.store)
+
+    @property
+    def estimate(self) -> PoseEstimate:
+        return estimated_pose(self.pair, self.store)
+
+    def features(self, *, by_estimate: bool) -> Matches:
+        return feature_matches(self.pair, by_estimate, self.store)
+
+    def pose_seconds(self) -> float:
+        return _pose_time(self.pair, self.store)
+
+
 def _measured(task: CellTask, store: Store) -> Outcome:
     method = registry(METHODS).get(task.method_source)
     if isinstance(task.pair, PhotographedSpec):
         load_images(task.pair, store)  # raises for images that are not the calibration's
     options, problem = checked_options(method, task.options), problem_of(task, store)
-    columns: dict[str, float] = {}
-    if "timing" in task.metrics:
-        rectification, columns["fit_s"] = timed(lambda: method.value.fit(problem, options))
-        check_result(method.name, rectification, problem)
-    else:
-        rectification = fit(method, problem, options)
-    scores, remarks = _scores(task, rectification, store)
-    columns |= scores
-    if "timing" in task.metrics:
-        columns |= _warp_times(rectification)
-        if task.cell.pose == ESTIMATED:
-            columns["pose_s"] = _pose_time(task.pair, store)
-            columns["total_s"] = columns["pose_s"] + columns["fit_s"] + columns["warp_s"]
-    return Outcome(metrics=columns, notes={**rectification.notes, **remarks})
-
-
-def _scores(
-    task: CellTask, rectification: Rectification, store: Store
-) -> tuple[dict[str, float], dict[str, str]]:
-    """The columns of the row, and what is to be said of them."""
-    pair, asked, by_estimate = task.pair, task.metrics, task.cell.pose == ESTIMATED
-    rig, remarks = placed_rig(pair), dict[str, str]()
-    features, board = None, corners_of_board(pair, store) if "row_error_board" in asked else None
-    if board is not None:
-        remarks["board"] = board.kind
-    if "row_error_features" in asked:
-        try:
-            features = feature_matches(pair, by_estimate, store)
-        except PoseNotFound as failure:
-            remarks["no_features"] = str(failure)
-    columns = measure(
+    rectification, seconds = timed(lambda: method.value.fit(problem, options))
+    check_result(method.name, rectification, problem)
+    case = Case(
         rectification,
-        rig,
-        geometry="geometry" in asked,
-        true_matches=_true_matches(pair, store) if "row_error" in asked else None,
-        feature_matches=features,
-        board_matches=board.matches if board else None,
+        _Known(task.pair, store),
+        pose_is_estimated=task.cell.pose == ESTIMATED,
+        fit=lambda: method.value.fit(problem, options),
+        first_fit_s=seconds,
     )
-    if "distortion" in asked:
-        columns |= distortion_columns(Jacobians.at(rectification))
-    if by_estimate:
-        estimate = estimated_pose(pair, store)
-        if isinstance(pair, PhotographedSpec):
-            columns |= calibration_columns(estimate, rig)
-            if contradiction := estimate.contradiction(rig):
-                remarks["contradiction"] = contradiction
-        else:
-            columns |= pose_columns(estimate, rig)
-    if "energy" in asked:
-        columns["energy_convex_share"] = energy_convex_share(rectification)
-    if "reconstruction" in asked:
-        images = load_images(pair, store)
-        found = reconstruct(rectification, images.left, images.right)
-        columns |= reconstruction_scores(found, _truth(pair, store))
-    return columns, remarks
+    columns = score(case, task.metrics)
+    return Outcome(metrics=columns, notes={**rectification.notes, **case.remarks})
 
 
 @lru_cache(maxsize=1)
 def _pose_time(pair: PairSpec, store: Store) -> float:
     """Seconds from the two images, in memory, to the pose."""
     images = load_images(pair, store)
-    return timed(lambda: estimate_from_images(pair, images))[1]
-
-
-def _warp_times(rectification: Rectification) -> dict[str, float]:
-    _, maps_s = timed(lambda: (rectification.maps("left"), rectification.maps("right")))
-    left, right = (
-        np.full((camera.height, camera.width, 3), 127, dtype=np.uint8)
-        for camera in (rectification.left.source, rectification.right.source)
-    )
-    _, both_s = timed(lambda: rectification.remap(left, right))
-    return {"maps_s": maps_s, "warp_s": both_s}
-
-
-def timed(call: Callable[[], Result]) -> tuple[Result, float]:
-    """The result of `call` and the seconds it takes warm: the best of 3 calls after a first one.
-
-    A call of more than a second is timed as it is: it hardly feels that the caches were cold.
-    """
-    seconds: list[float] = []
-    while len(seconds) <= REPEATS:
-        start = time.perf_counter()
-        result = call()
-        seconds.append(time.perf_counter() - start)
-        if seconds[0] > SLOW_CALL_S:
-            return result, seconds[0]
-    return result, min(seconds[1:])
+    return warm_seconds(lambda: estimate_from_images(pair, images))

@@ -6,7 +6,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from rectbench.metrics.catalogue import column
 from rectbench.plugins.metric import Column
 from rectbench.reporting.figures import EXTENSIONS, Drawn
 from rectbench.reporting.page.run_facts import (
@@ -119,7 +118,7 @@ def render_page(run: Run, tables: Sequence[Table], drawn: Sequence[Drawn]) -> st
         failures=of_kind.get("failures"),
         tables=list(tables),
         colours={method: colour for method, (colour, _) in looks(run.methods).items()},
-        glossary=[column(key) for key in run.metrics],
+        glossary=[run.catalogue.column(key) for key in run.metrics],
         facts=run_facts(run),
         full_json=full_json(run),
         reproduce=reproduce_command(run),
@@ -134,7 +133,9 @@ def _methods(run: Run) -> tuple[str, ...]:
 
 def _part(part: Run, tables: Sequence[Table], drawn: Sequence[Drawn]) -> Part:
     topics, anchor = [], slug("part", part.group) if part.group else ""
-    for name, heading, of_tables, of_figures in TOPICS:
+    known = {title for _, title, _, _ in TOPICS}
+    others = [topic for topic in part.catalogue.topics if topic not in known]
+    for name, heading, of_tables, of_figures in (*TOPICS, *((slug(t), t, (slug(t),), ()) for t in others)):
         mine = [t for t in tables if t.part == part.group and t.kind in of_tables]
         figures = [d for d in drawn if d.plan.part == part.group and d.plan.kind in of_figures]
         if mine or figures:

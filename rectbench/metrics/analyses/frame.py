@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from rectbench.metrics.coverage import coverage
-from rectbench.metrics.distortion import log_distortion
+from rectbench.metrics.log_distortion import log_distortion
 from rectbench.metrics.sampling import every_pixel
 from rectbench.rigs import Rig
 from rectbench.warps import Rectification, centre_resolution_px

@@ -24,8 +24,8 @@ from numpy.typing import ArrayLike
 
 from rectbench.cameras.projection import as_points
 from rectbench.errors import InvalidInput
+from rectbench.metrics.analyses.propagation import GROUPS, Propagation
 from rectbench.metrics.coverage import dense_pixels
-from rectbench.metrics.propagation import GROUPS, Propagation
 from rectbench.rigs import Rig
 from rectbench.rigs.covariance import RigCovariance
 from rectbench.types import FloatArray
