@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import Any
 
-from pydantic import TypeAdapter
+from pydantic import TypeAdapter, ValidationError
 
+from rectbench.errors import InvalidInput
 from rectbench.plugins.metric import METRICS, TOPICS, Column, Metric, Shown
 from rectbench.registry import registry
 
@@ -112,8 +113,11 @@ def stored_columns(metrics: Iterable[Metric]) -> dict[str, Any]:
 
 
 def catalogue_of(stored: Any) -> Catalogue:
-    """The known columns, and those that a run has kept."""
-    return known().joined(_STORED.validate_python(stored or {}))
+    """The known columns, and those that a run has kept. Raises InvalidInput for what are no columns."""
+    try:
+        return known().joined(_STORED.validate_python(stored or {}))
+    except ValidationError as error:
+        raise InvalidInput(f"a run's columns cannot be read: {error.errors()[0]['msg']}") from None
 
 
 def column(key: str) -> Column:

@@ -75,7 +75,7 @@ def _numbers(metric: Metric, case: Case) -> dict[str, float]:
     found = metric.compute(case)
     if not isinstance(found, Mapping):
         raise InvalidResult(
-            f"metric {metric.name} returned a {type(found).__name__}; expected numbers by column"
+            f"metric {metric.name} returned a {type(found).__name__}; expected numbers by their columns"
         )
     keys = {column.key for column in metric.columns}
     for key, value in found.items():

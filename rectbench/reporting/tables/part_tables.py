@@ -65,7 +65,7 @@ def _topic_tables(part: Run, topic: str) -> Iterator[Table]:
     if topic == "Distortion":
         yield from [distortion_table(part)] if is_ranked(part) else []
     elif topic == "Poses":
-        yield from [pose_table(part, columns)] if columns else []
+        yield from [pose_table(part)] if columns else []
     elif topic == "Time":
         yield from [timing_table(part)] if "timing" in wanted_kinds(part) and columns else []
     elif any(column.shown == "topic" for column in columns) and (
@@ -143,8 +143,9 @@ def _by_pair(run: Run, pose: str) -> dict[str, tuple[Result, ...]]:
     return {"all pairs": results, **by_pair} if len(labels) > 1 else by_pair
 
 
-def pose_table(run: Run, columns: Sequence[Column]) -> Table:
+def pose_table(run: Run) -> Table:
     """The estimated poses, a row a pair; all methods of a pair share them."""
+    columns = topic_columns(run, "Poses")
     keys = [column.key for column in columns]
     rows = [
         _pose_row(one_line(label), _poses(run.select(place=place), keys), columns, np.mean)
