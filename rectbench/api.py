@@ -15,8 +15,8 @@ from rectbench.calibrations import holds_many, load_rig, load_rig_of_images
 from rectbench.calibrations.reading import RigSource
 from rectbench.errors import InvalidInput
 from rectbench.matching.features.matches import RATIO
-from rectbench.matching.pose.estimate import WORKING_PIXELS, PoseEstimate, pose_from_images
-from rectbench.pairs.pairs import build_world, placed, render_seed
+from rectbench.matching.pose.estimate import POSE_PIXELS, PoseEstimate, pose_from_images
+from rectbench.pairs.rendering import placed, render_seed
 from rectbench.plugins.fitting import checked_options, fit
 from rectbench.plugins.rectifier import METHODS, pose_problem
 from rectbench.plugins.scene import SCENES
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from rectbench.applications.rectified_images import RectifiedImages
     from rectbench.experiments.spec import Report
     from rectbench.images.stereo_pair import StereoPair
-    from rectbench.pairs.finding.pairing import FilePair
+    from rectbench.pairs.finding.names import FilePair
     from rectbench.rendering.truth import Truth
 
 SIDES = ("left", "right")
@@ -155,7 +155,7 @@ def rectify_images(
 
 def _refuse_guessed_cameras(rig: Rig | RigSource | Sequence[RigSource], pair: FilePair) -> None:
     """Raise InvalidInput for images numbered as others than the first two cameras of a file of many."""
-    from rectbench.pairs.finding.pairing import camera_numbers
+    from rectbench.pairs.finding.names import camera_numbers
 
     numbers = camera_numbers(pair)
     files = [] if isinstance(rig, Rig) else [rig] if isinstance(rig, str | os.PathLike) else list(rig)
@@ -173,7 +173,7 @@ def estimate_pose(
     detector: str = "sift",
     ratio: float = RATIO,
     farthest: float | None = None,
-    working_pixels: float | None = WORKING_PIXELS,
+    working_pixels: float | None = POSE_PIXELS,
     seed: int = 0,
 ) -> PoseEstimate:
     """How the right camera stands to the left one as two photographs show it.
@@ -239,11 +239,10 @@ def render(
     from rectbench.rendering.pair import render_pair
 
     found = registry(SCENES).get(scene)
-    source = str(Path(scene).resolve()) if is_path(scene) else str(scene)
     calibrated = rig if isinstance(rig, Rig) else load_rig(rig)
     true_rig = placed(calibrated, found.name, motion, _checked_seed(seed), _checked_width(image_width))
     noise = render_seed(found.name, calibrated.name, motion, seed)
-    return render_pair(build_world(source, seed), true_rig, seed=noise, spp=spp, quality=quality)
+    return render_pair(found.value.build(seed), true_rig, seed=noise, spp=spp, quality=quality)
 
 
 def export_dataset(

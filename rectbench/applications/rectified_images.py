@@ -29,7 +29,7 @@ from rectbench.images.reading import read_images
 from rectbench.matching.boards.corners import board_matches
 from rectbench.matching.pose.consistent import consistent_matches
 from rectbench.metrics import RowError, frame_costs, row_error
-from rectbench.pairs.finding.pairing import FilePair, LeftOut, Pairing
+from rectbench.pairs.finding.names import FilePair, LeftOut, Pairing
 from rectbench.plugins.fitting import checked_options, fit
 from rectbench.plugins.rectifier import METHODS, pose_problem
 from rectbench.progress import Progress

@@ -37,6 +37,15 @@ class Camera(Projection):
         None where the model's own domain is the only bound.
 
     Raises InvalidInput for a size, parameter or angle that makes no camera.
+
+    >>> import rectbench as rb
+    >>> centre = {"cx": 319.5, "cy": 239.5}
+    >>> camera = rb.Camera("equidistant", (640, 480), {"fx": 200, "fy": 200, **centre}, max_angle_deg=95)
+    >>> pixels, seen = camera.project([[0, 0, 1], [1, 0, 0], [0, 0, -1]])  # ahead, to the right, behind
+    >>> pixels.round(2)
+    array([[319.5 , 239.5 ], [633.66, 239.5 ], [   nan,    nan]])
+    >>> seen
+    array([ True,  True, False])
     """
 
     model: str

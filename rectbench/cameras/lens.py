@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from types import SimpleNamespace
 from typing import Any, ClassVar
 
-from rectbench.cameras.parameters import POSITIVE, Interval
+from rectbench.cameras.intervals import POSITIVE, Interval
 from rectbench.errors import UnknownName
 from rectbench.formulas.domain import PIXEL_SLACK, RAY_SLACK
 

@@ -31,6 +31,21 @@ class Projection(ABC):
 
     A subclass states its two formulas against a namespace `xp` (see `rectbench.formulas.arrays`) and
     the constants in them; everything else, derivatives included, follows from those.
+
+    >>> import rectbench as rb
+    >>> class Stereographic(rb.Projection):  # 100 px · tan(θ/2) from the centre
+    ...     constants = {"f": 100.0}
+    ...     def project_formula(self, c, x, y, z, xp):
+    ...         reach = xp.sqrt(x * x + y * y + z * z) + z
+    ...         return c.f * x / reach, c.f * y / reach, reach > 0
+    ...     def unproject_formula(self, c, u, v, xp):
+    ...         p, q = u / c.f, v / c.f
+    ...         square = p * p + q * q
+    ...         return 2 * p / (1 + square), 2 * q / (1 + square), (1 - square) / (1 + square), square >= 0
+    >>> Stereographic().project([1, 0, 0])
+    (array([100.,   0.]), array(True))
+    >>> Stereographic().project_jacobian([0, 0, 1])
+    array([[50.,  0.,  0.], [ 0., 50.,  0.]])
     """
 
     @property
@@ -61,7 +76,7 @@ class Projection(ABC):
     def project_jacobian(self, rays: ArrayLike) -> FloatArray:
         """d(pixel)/d(ray) [..., 2, 3] at rays [..., 3]; NaN outside the domain.
 
-        The pixel does not hang on the ray's length, so each row is orthogonal to the ray.
+        The pixel does not depend on the ray's length, so each row is orthogonal to the ray.
         """
         rays = as_points(rays, 3, "rays")
         partials, _ = evaluate_points(self._project_jacobian_formula, self.constants, rays)

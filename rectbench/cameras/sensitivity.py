@@ -1,4 +1,4 @@
-"""How a pixel hangs on the lens's own parameters: what a calibration's uncertainty is propagated by.
+"""How a pixel depends on the lens's own parameters: what a calibration's uncertainty is propagated by.
 
 A parameter goes by its name in the model; an entry of a sequence by name and place, such as `poly.0`.
 """
@@ -57,7 +57,7 @@ def parameter_constants(camera: Camera, names: Sequence[str]) -> Constants:
     """The constants of `parameter_partials`: the camera's own, and the slope of each by each parameter.
 
     A parameter's slope by itself is 1. What the model derives from its parameters, once a camera, is
-    differenced: those are a few numbers, and smooth wherever a pixel hangs on them.
+    differenced: those are a few numbers, and smooth wherever a pixel depends on them.
     """
     columns = [_slopes(camera, name) for name in names]
     return {"value": camera.constants, "slope": _transposed(camera.constants, columns)}
@@ -72,7 +72,7 @@ def parameter_partials(
     """
     ray = (constant(x), constant(y), constant(z))
     u, v, ok = camera.project_formula(_jets(c.value, c.slope), *ray, JetNamespace(xp))
-    none = (0.0 * x,) * count  # of a coordinate that hangs on none of them, as v on fx
+    none = (0.0 * x,) * count  # of a coordinate that depends on none of them, as v on fx
     return constant(u).partials or none, constant(v).partials or none, ok
 
 
@@ -110,7 +110,7 @@ def _difference(a: Any, b: Any, step: float) -> Any:
         return {name: _difference(value, b[name], step) for name, value in a.items()}
     if isinstance(a, tuple):
         return tuple(_difference(p, q, step) for p, q in zip(a, b, strict=True))
-    # An edge of the domain may lie at infinity; no pixel hangs on where it is.
+    # An edge of the domain may lie at infinity; no pixel depends on where it is.
     return (a - b) / step if np.isfinite(a) and np.isfinite(b) else 0.0
 
 
@@ -119,7 +119,7 @@ def _like(value: Any, number: float) -> Any:
 
 
 def _transposed(constants: Any, columns: Sequence[Any]) -> Any:
-    """For each constant its slopes by all parameters, none where it hangs on none of them."""
+    """For each constant its slopes by all parameters, none where it depends on none of them."""
     if isinstance(constants, Mapping):
         return {name: _transposed(held, [c[name] for c in columns]) for name, held in constants.items()}
     if isinstance(constants, tuple):

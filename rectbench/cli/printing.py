@@ -43,10 +43,13 @@ def show_names(kind: str, verbose: bool) -> None:
     from rectbench.plugins.rectifier import METHODS
     from rectbench.plugins.scene import SCENES
     from rectbench.registry import Kind, registry
+    from rectbench.rigs.file_formats import FORMATS
 
     screen, table = console(), _table(kind)
     broken: dict[str, str] = {}
-    kinds: dict[str, Kind[Any]] = {known.name: known for known in (METHODS, SCENES, METRICS, REPORTS)}
+    kinds: dict[str, Kind[Any]] = {
+        known.name: known for known in (METHODS, SCENES, METRICS, REPORTS, FORMATS)
+    }
     if kind in kinds:
         found = registry(kinds[kind])
         broken = found.broken
@@ -66,7 +69,7 @@ def show_names(kind: str, verbose: bool) -> None:
 
 
 def _described(kind: str) -> list[tuple[str, str]]:
-    from rectbench.calibrations import calibration_formats, load_rig, rig_names
+    from rectbench.calibrations import load_rig, rig_names
     from rectbench.experiments.spec import ESTIMATED
     from rectbench.rigs import MOTIONS, POSES
 
@@ -78,21 +81,11 @@ def _described(kind: str) -> list[tuple[str, str]]:
             for name, noise in POSES.items()
         ]
         return [*noises, (ESTIMATED, "found in the images: features, five points, bundle adjustment")]
-    if kind == "formats":
-        return [(name, f"{title}{_how_written(name)}") for name, title in calibration_formats().items()]
     rigs = [(name, load_rig(name)) for name in rig_names()]
     return [
         (name, f"{r.left.model}, {r.left.width}x{r.left.height}, baseline {1000 * r.baseline_m:.0f} mm")
         for name, r in rigs
     ]
-
-
-def _how_written(format: str) -> str:
-    """What is said of a format that is not only read."""
-    from rectbench.calibrations import written_formats
-
-    in_folder = written_formats().get(format)
-    return {None: "", False: "; read and written", True: "; read and written, as a folder"}[in_folder]
 
 
 def _add_options(table: Table, method: Any) -> None:

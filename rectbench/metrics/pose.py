@@ -51,7 +51,7 @@ class Pose(Metric):
         """Errors where the truth is known. Else differences: neither pose is the truth, and where they
         contradict each other that becomes a remark.
         """
-        estimate, is_known = case.pair.estimate, case.pair.has_truth
+        estimate, is_known = case.pair.estimate, case.pair.knows_truth
         rotation_deg, direction_deg = estimate.difference_deg(case.rig)
         if not is_known and (contradiction := estimate.contradiction(case.rig)):
             case.remarks["contradiction"] = contradiction

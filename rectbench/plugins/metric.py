@@ -146,12 +146,12 @@ class Known(Protocol):
         """The true rig; of photographs the calibrated one."""
 
     @property
-    def has_truth(self) -> bool:
-        """Whether the truth is known: of rendered pairs it is, of photographs nobody knows it."""
-
-    @property
     def images(self) -> StereoPair:
         """The images, rendered or photographed."""
+
+    @property
+    def knows_truth(self) -> bool:
+        """Whether anybody knows the truth about the pair."""
 
     @property
     def truth(self) -> Truth:
@@ -176,7 +176,7 @@ class Known(Protocol):
         """
 
     def pose_seconds(self) -> float:
-        """Seconds from the two images, in memory, to their pose."""
+        """Seconds from the two images, in memory, to their pose, warm."""
 
 
 @dataclass(frozen=True, eq=False)

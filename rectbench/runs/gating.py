@@ -97,7 +97,7 @@ def gate(run_dir: Path, path: Path) -> Verdict:
     run, accepted = _by_key(read_results(run_dir)), _by_key(numbers)
     facts, verdict = read_facts(run_dir), Verdict()
     is_whole, gated = bool(facts.get("is_whole")), catalogue_of(facts.get("columns")).gated
-    unknown = set(numbers) - {*KEY, "status", *(column.key for column in gated)}
+    unknown = set(map(str, numbers)) - {*KEY, "status", *(column.key for column in gated)}
     verdict.incomplete += [f"{name}: no metric of the run has this column" for name in sorted(unknown)]
     for key, known in accepted.items():
         if key not in run:

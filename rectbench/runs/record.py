@@ -44,6 +44,7 @@ PACKAGES = (
     "karellen-llvm-core",
 )
 
+
 def table_of(plan: Plan, outcomes: Sequence[Outcome]) -> pd.DataFrame:
     """One row a cell, in the plan's order: identity, status, reason, metrics, notes."""
     rows = []

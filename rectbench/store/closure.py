@@ -21,6 +21,8 @@ def source_closure(*modules: str, root: Path = PACKAGE) -> tuple[Path, ...]:
     Imports inside functions count, since they compute as well; those for type checkers alone do not. A
     package's `__init__` counts with each of its modules, since Python runs it first.
     """
+    if unknown := [name for name in modules if _file_of(name, root) is None]:
+        raise ValueError(f"there is no module {unknown[0]} in {root}")
     found: dict[str, Path] = {}
     queue = list(modules)
     while queue:

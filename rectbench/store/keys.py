@@ -42,7 +42,7 @@ def file_digest(path: Path) -> str:
 
 
 def derived_seed(purpose: str, *identity: str | int) -> int:
-    """A seed in [0, 2³²) that hangs on the identity alone, not on order, process or job count."""
+    """A seed in [0, 2³²) that depends on the identity alone, not on order, process or job count."""
     return int(digest([purpose, *identity])[:8], 16)
 
 

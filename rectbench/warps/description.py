@@ -3,7 +3,7 @@
     rectbench_rectification: 1      # this format; marks the file as one
     size: [820, 501]                # width and height of both rectified images, pixels
     baseline_m: 0.064               # x of the right camera in the rectified left frame
-    rig: ...                        # the source cameras and their pose, see `rectbench.calibrations.native`
+    rig: ...                        # the source cameras and their pose, see `calibrations.formats.native`
     left:
       R_rect_cam: ...               # 3x3, from the camera's frame to the rectified one
       target: ...                   # from rays to rectified pixels: perspective, or epipolar
@@ -22,9 +22,10 @@ from pathlib import Path
 from typing import Any
 
 from rectbench.calibrations.contract import Given
-from rectbench.calibrations.documents.documents import Section, blaming, one_line, parse_document
+from rectbench.calibrations.documents.faults import blaming, one_line
+from rectbench.calibrations.documents.sections import Section, parse_document
 from rectbench.calibrations.documents.sources import Source
-from rectbench.calibrations.native import dump, read_fields, rig_fields
+from rectbench.calibrations.formats.native import read_fields, rig_fields
 from rectbench.errors import InvalidInput, UnknownName
 from rectbench.warps.frame import signed_baseline_m
 from rectbench.warps.profiles import Cubic, FramedProfile, Profile, Radial
@@ -32,6 +33,7 @@ from rectbench.warps.rectification import Rectification
 from rectbench.warps.targets import Epipolar, Framed, Perspective, Target
 from rectbench.warps.warp import Warp
 from rectbench.writing import write_atomically
+from rectbench.yaml_text import yaml_text
 
 MARK = "rectbench_rectification"
 VERSION = "1"
@@ -70,7 +72,7 @@ def rectification_text(rect: Rectification, **facts: Any) -> str:
         content[side] = {"R_rect_cam": warp.R_rect_cam.tolist(), "target": TARGET.write(warp.target)}
     content["notes"] = {name: float(n) if isinstance(n, float) else n for name, n in rect.notes.items()}
     content["rig"] = rig_fields(rect.rig)
-    return HEADER + dump(content)
+    return HEADER + yaml_text(content)
 
 
 def load_rectification(path: str | os.PathLike[str]) -> Rectification:

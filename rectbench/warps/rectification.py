@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Literal
 
 import cv2
 import numpy as np
@@ -15,12 +14,11 @@ from rectbench.errors import InvalidInput
 from rectbench.rigs import Rig
 from rectbench.types import FloatArray
 from rectbench.warps.frame import rectifying_rotations, signed_baseline_m
-from rectbench.warps.lookup.resampling import Filter, Resampler
+from rectbench.warps.lookup.resampling import Filter, Resampler, Side
 from rectbench.warps.lookup.tables import FloatMap, lookup_table, reads_source
 from rectbench.warps.targets import Target
 from rectbench.warps.warp import Warp
 
-Side = Literal["left", "right"]
 LARGEST_SIDE_PX = 32766
 """`cv2.remap` takes no larger image."""
 

@@ -39,7 +39,7 @@ class Exact:
 
     rig: rb.Rig
     true_matches: rb.Matches
-    has_truth: bool = True
+    knows_truth: bool = True
     board: None = None
 
     def features(self, *, by_estimate: bool) -> rb.Matches:

@@ -24,7 +24,7 @@ from rectbench.applications.export.dataset_pair import (
 )
 from rectbench.applications.export.dataset_readme import readme_text
 from rectbench.errors import InvalidInput
-from rectbench.pairs.pairs import RENDERING_PACKAGES, placed, render_seed, set_stage
+from rectbench.pairs.rendering import RENDERING_PACKAGES, Studio, placed, render_seed
 from rectbench.pairs.rig_numbers import rig_numbers
 from rectbench.plugins.fitting import checked_options, fit
 from rectbench.plugins.rectifier import METHODS, Options, Rectifier, pose_problem
@@ -143,7 +143,7 @@ def _write_pair(export: Export, seed: int, mark: str, out: Path) -> dict[str, An
     """Render and write a pair; its manifest, which is written last."""
     rect = export.rectification(seed)
     scene, name = registry(SCENES).get(export.scene_source).name, _name(seed)
-    stage = set_stage(export.scene_source, seed, export.quality)
+    stage = Studio().stage(export.scene_source, seed, export.quality)
     truth, rectified = stage.survey(rect.rig), stage.survey_rectified(rect)
     noise = render_seed(scene, export.rig.name, export.motion, seed)
     images = stage.photograph(rect.rig, seed=noise, spp=export.spp)

@@ -12,8 +12,8 @@ from types import SimpleNamespace
 from typing import Any, ClassVar
 
 from rectbench.cameras import brown
+from rectbench.cameras.intervals import Interval
 from rectbench.cameras.lens import FOCAL_PARAMETERS, Lens, register
-from rectbench.cameras.parameters import Interval
 from rectbench.formulas.domain import FARTHEST, PIXEL_SLACK
 
 TILT = Interval(-0.5 * math.pi, 0.5 * math.pi, low_open=True, high_open=True)

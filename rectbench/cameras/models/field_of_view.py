@@ -6,8 +6,8 @@ import math
 from types import SimpleNamespace
 from typing import Any, ClassVar
 
+from rectbench.cameras.intervals import Interval
 from rectbench.cameras.lens import FOCAL_PARAMETERS, Lens, RadialLens, register
-from rectbench.cameras.parameters import Interval
 
 LEAST_OMEGA = 1e-12
 """Stands for ω = 0, the pinhole: the two differ by 1e-24 tan²θ."""

@@ -169,8 +169,8 @@ def to_latex(table: Table) -> str:
 
 @cache
 def _latex_template() -> Template:
-    layout = {"trim_blocks": True, "lstrip_blocks": True, "keep_trailing_newline": True}
-    environment = Environment("<%", "%>", "<<", ">>", loader=PackageLoader("rectbench.reporting"), **layout)
+    loader = PackageLoader("rectbench.reporting")
+    environment = Environment("<%", "%>", "<<", ">>", trim_blocks=True, lstrip_blocks=True, loader=loader)
     environment.filters |= {"tex": escape_latex, "head": _latex_heading, "field": _latex_entry}
     return environment.get_template("table.tex.j2")
 
