@@ -51,11 +51,7 @@ class Timing(Metric):
         ),
         _milliseconds("maps_s", "maps", "Time to make both lookup tables.", shown="page", promised=True),
         _milliseconds(
-            "warp_s",
-            "warp",
-            "Time to warp both images, their tables included.",
-            promised=True,
-            panel="warp",
+            "warp_s", "warp", "Time to warp both images, their tables included.", promised=True, panel="warp"
         ),
         _milliseconds(
             "total_s",

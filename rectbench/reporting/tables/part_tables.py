@@ -118,13 +118,15 @@ _WORDINGS = {
 def pairwise_tables(run: Run, topic: str) -> Iterator[Table]:
     """A topic's columns over all pairs and on each; of photographs a table a pose.
 
-    Methods that were measured and have no number of the topic anywhere are left out: it is not about them.
+    Methods whose cells were all measured, without a number of the topic, are left out: it does not concern them.
     """
     usual = _Wording(slug(topic), slug(topic), topic, "{pose} pose, averages over seeds.")
     wording = _WORDINGS.get(topic, usual)
     own = {column.key for column in run.catalogue.topics[topic]}
-    mute = {r.method for r in run.results if r.ok} - {r.method for r in run.results if own & r.metrics.keys()}
-    about = run.only(r for r in run.results if r.method not in mute)
+    unmeasured = {r.method for r in run.results if r.ok} - {
+        r.method for r in run.results if own & r.metrics.keys()
+    }
+    about = run.only(r for r in run.results if r.method not in unmeasured)
     columns = [*measured(about, map(run.catalogue.column, wording.beside)), *topic_columns(about, topic)]
     for pose in run.poses if run.is_of_photographs else run.noisy_poses[:1]:
         caption = (run.is_of_photographs and wording.of_photographs) or wording.caption
