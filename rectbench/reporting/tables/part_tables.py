@@ -118,7 +118,7 @@ _WORDINGS = {
 def pairwise_tables(run: Run, topic: str) -> Iterator[Table]:
     """A topic's columns over all pairs and on each; of photographs a table a pose.
 
-    Methods whose cells were all measured, without a number of the topic, are left out: it does not concern them.
+    Methods that were measured, and have no number of the topic anywhere, are left out: it is not about them.
     """
     usual = _Wording(slug(topic), slug(topic), topic, "{pose} pose, averages over seeds.")
     wording = _WORDINGS.get(topic, usual)
