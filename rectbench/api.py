@@ -17,6 +17,7 @@ from rectbench.errors import InvalidInput
 from rectbench.matching.features.matches import RATIO
 from rectbench.matching.pose.estimate import POSE_PIXELS, PoseEstimate, pose_from_images
 from rectbench.pairs.rendering import placed, render_seed
+from rectbench.plugins.defaults import DEFAULT_METHOD, UNCALIBRATED_METHOD
 from rectbench.plugins.fitting import checked_options, fit
 from rectbench.plugins.rectifier import METHODS, pose_problem
 from rectbench.plugins.scene import SCENES
@@ -40,7 +41,7 @@ SIDES = ("left", "right")
 
 def rectify(
     rig: Rig,
-    method: str | Path = "local-homography",
+    method: str | Path = DEFAULT_METHOD,
     images: StereoPair | Sequence[ArrayLike] | None = None,
     pixels: ArrayLike | None = None,
     matches: Sequence[ArrayLike] | None = None,
@@ -129,7 +130,7 @@ def rectify_images(
 
     check_writable(Path(out))
     wanted = Wanted(
-        method=str(method or ("hartley" if rig is None else "local-homography")),
+        method=str(method or (UNCALIBRATED_METHOD if rig is None else DEFAULT_METHOD)),
         options=options or {},
         framing=framing or Framing(),
         tables=tuple(tables),
@@ -255,7 +256,7 @@ def export_dataset(
     spp: int = 64,
     quality: str = "path",
     image_width: int | None = None,
-    method: str | Path = "local-homography",
+    method: str | Path = DEFAULT_METHOD,
     options: Mapping[str, Any] | None = None,
     progress: bool | None = None,
 ) -> Exported:

@@ -30,6 +30,7 @@ from rectbench.matching.boards.corners import board_matches
 from rectbench.matching.pose.consistent import consistent_matches
 from rectbench.metrics import RowError, frame_costs, row_error
 from rectbench.pairs.finding.names import FilePair, LeftOut, Pairing
+from rectbench.plugins.defaults import DEFAULT_METHOD
 from rectbench.plugins.fitting import checked_options, fit
 from rectbench.plugins.rectifier import METHODS, pose_problem
 from rectbench.progress import Progress
@@ -50,7 +51,7 @@ Image = NDArray[np.generic]
 class Wanted:
     """What is to be made."""
 
-    method: str = "local-homography"
+    method: str = DEFAULT_METHOD
     options: Mapping[str, Any] = field(default_factory=dict)
     framing: Framing = field(default_factory=Framing)
     tables: tuple[str, ...] = tuple(TABLES)

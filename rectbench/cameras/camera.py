@@ -19,6 +19,7 @@ from rectbench.cameras.parameters import checked_parameters
 from rectbench.cameras.projection import Projection, as_points
 from rectbench.errors import InvalidInput
 from rectbench.formulas.domain import PIXEL_SLACK, RAY_SLACK
+from rectbench.formulas.protocol import Formulas
 from rectbench.types import BoolArray, Constants, FloatArray
 
 
@@ -84,11 +85,11 @@ class Camera(Projection):
         """Image height, pixels."""
         return self.size[1]
 
-    def project_formula(self, c: Any, x: Any, y: Any, z: Any, xp: Any) -> tuple[Any, Any, Any]:
+    def project_formula(self, c: Any, x: Any, y: Any, z: Any, xp: Formulas) -> tuple[Any, Any, Any]:
         u, v, ok = lens_named(self.model).project(c, x, y, z, xp)
         return u, v, ok & (z >= (c.cos_max_angle - RAY_SLACK) * xp.sqrt(x * x + y * y + z * z))
 
-    def unproject_formula(self, c: Any, u: Any, v: Any, xp: Any) -> tuple[Any, Any, Any, Any]:
+    def unproject_formula(self, c: Any, u: Any, v: Any, xp: Formulas) -> tuple[Any, Any, Any, Any]:
         x, y, z, ok = lens_named(self.model).unproject(c, u, v, xp)
         return x, y, z, ok & (z >= c.cos_max_angle - PIXEL_SLACK)
 

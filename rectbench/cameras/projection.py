@@ -9,7 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rectbench.errors import InvalidInput
-from rectbench.formulas.arrays import JetNamespace, as_jets, constant, evaluate_points, variables
+from rectbench.formulas.evaluation import evaluate_points
+from rectbench.formulas.jets import JetNamespace, as_jets, constant, variables
+from rectbench.formulas.protocol import Formulas
 from rectbench.types import BoolArray, Constants, FloatArray
 
 __all__ = ["BoolArray", "Projection", "as_points", "projected_partials"]
@@ -29,7 +31,7 @@ def as_points(array: ArrayLike, width: int, name: str) -> FloatArray:
 class Projection(ABC):
     """A mapping between rays (x right, y down, z forward) and pixels, invertible on its domain.
 
-    A subclass states its two formulas against a namespace `xp` (see `rectbench.formulas.arrays`) and
+    A subclass states its two formulas against a namespace `xp` (see `rectbench.formulas.protocol`) and
     the constants in them; everything else, derivatives included, follows from those.
 
     >>> import rectbench as rb
@@ -54,11 +56,11 @@ class Projection(ABC):
         """The numbers in the formulas, by the names under which these read them."""
 
     @abstractmethod
-    def project_formula(self, c: Any, x: Any, y: Any, z: Any, xp: Any) -> tuple[Any, Any, Any]:
+    def project_formula(self, c: Any, x: Any, y: Any, z: Any, xp: Formulas) -> tuple[Any, Any, Any]:
         """Pixel (u, v) of the ray (x, y, z), of any length, and whether the ray is in the domain."""
 
     @abstractmethod
-    def unproject_formula(self, c: Any, u: Any, v: Any, xp: Any) -> tuple[Any, Any, Any, Any]:
+    def unproject_formula(self, c: Any, u: Any, v: Any, xp: Formulas) -> tuple[Any, Any, Any, Any]:
         """Unit ray (x, y, z) of the pixel (u, v), and whether the pixel is in the domain."""
 
     def project(self, rays: ArrayLike) -> tuple[FloatArray, BoolArray]:
@@ -82,7 +84,7 @@ class Projection(ABC):
         partials, _ = evaluate_points(self._project_jacobian_formula, self.constants, rays)
         return partials.reshape(*rays.shape[:-1], 2, 3)
 
-    def _project_jacobian_formula(self, c: Any, x: Any, y: Any, z: Any, xp: Any) -> tuple[Any, ...]:
+    def _project_jacobian_formula(self, c: Any, x: Any, y: Any, z: Any, xp: Formulas) -> tuple[Any, ...]:
         (ux, uy, uz), (vx, vy, vz), ok = projected_partials(self, c, x, y, z, xp)
         return ux, uy, uz, vx, vy, vz, ok
 
@@ -104,7 +106,7 @@ class Projection(ABC):
 
 
 def projected_partials(
-    projection: Projection, c: Any, x: Any, y: Any, z: Any, xp: Any
+    projection: Projection, c: Any, x: Any, y: Any, z: Any, xp: Formulas
 ) -> tuple[tuple[Any, ...], tuple[Any, ...], Any]:
     """The partial derivatives of u and of v by x, y, z, and the mask, as part of a formula."""
     u, v, ok = projection.project_formula(as_jets(c), *variables(x, y, z), JetNamespace(xp))

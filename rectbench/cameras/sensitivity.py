@@ -18,7 +18,9 @@ from rectbench.cameras.lens import lens_named
 from rectbench.cameras.parameters import Parameter
 from rectbench.cameras.projection import as_points
 from rectbench.errors import UnknownName
-from rectbench.formulas.arrays import Jet, JetNamespace, constant, evaluate_points
+from rectbench.formulas.evaluation import evaluate_points
+from rectbench.formulas.jets import Jet, JetNamespace, constant
+from rectbench.formulas.protocol import Formulas
 from rectbench.types import Constants, FloatArray
 
 DERIVED_STEP = 1e-6
@@ -45,7 +47,7 @@ def projection_by_parameters(camera: Camera, rays: ArrayLike, names: Sequence[st
     """d(pixel)/d(parameter) [..., 2, P] of fixed rays [..., 3], for P names; NaN outside the domain."""
     rays = as_points(rays, 3, "rays")
 
-    def formula(c: Any, x: Any, y: Any, z: Any, xp: Any) -> tuple[Any, ...]:
+    def formula(c: Any, x: Any, y: Any, z: Any, xp: Formulas) -> tuple[Any, ...]:
         by_u, by_v, ok = parameter_partials(camera, c, len(names), x, y, z, xp)
         return *by_u, *by_v, ok
 
@@ -64,7 +66,7 @@ def parameter_constants(camera: Camera, names: Sequence[str]) -> Constants:
 
 
 def parameter_partials(
-    camera: Camera, c: Any, count: int, x: Any, y: Any, z: Any, xp: Any
+    camera: Camera, c: Any, count: int, x: Any, y: Any, z: Any, xp: Formulas
 ) -> tuple[tuple[Any, ...], tuple[Any, ...], Any]:
     """The partial derivatives of u and of v by the parameters, and the mask, as part of a formula.
 

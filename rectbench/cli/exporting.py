@@ -9,6 +9,7 @@ import typer
 
 from rectbench.cli.app import Method, MethodOptions
 from rectbench.cli.number_texts import whole_numbers
+from rectbench.plugins.defaults import DEFAULT_METHOD
 
 
 def export(
@@ -22,7 +23,7 @@ def export(
     spp: Annotated[int, typer.Option(help="Samples a pixel, a power of two.")] = 64,
     quality: Annotated[str, typer.Option(help="path or fast.")] = "path",
     width: Annotated[int | None, typer.Option(help="Scale the rig to this image width, pixels.")] = None,
-    method: Method = "local-homography",
+    method: Method = DEFAULT_METHOD,
     option: MethodOptions = None,
 ) -> None:
     """Render a dataset: images, depth, flow, rectified pairs with disparity, masks and calibrations.

@@ -19,6 +19,7 @@ from rectbench.cli.app import (
     Unit,
     split_names,
 )
+from rectbench.plugins.defaults import DEFAULT_METHOD
 
 if TYPE_CHECKING:
     from rectbench.rigs import Rig
@@ -63,7 +64,7 @@ def reconstruct(
     out: Annotated[Path, typer.Option("--out", "-o", help="Folder for what is made.")] = Path(
         "reconstructed"
     ),
-    method: Method = "local-homography",
+    method: Method = DEFAULT_METHOD,
     option: MethodOptions = None,
     seed: MethodSeed = 0,
     max_angle_deg: MaxAngle = None,

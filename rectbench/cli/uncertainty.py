@@ -18,6 +18,7 @@ from rectbench.cli.app import (
     split_names,
 )
 from rectbench.errors import InvalidInput
+from rectbench.plugins.defaults import DEFAULT_METHOD
 
 POSE_SIZES = {"rotation_deg", "direction_deg"}
 
@@ -50,7 +51,7 @@ def uncertainty(
     ] = None,
     centre_px: Annotated[float | None, typer.Option(min=0, help="σ of each camera's cx and cy.")] = None,
     out: Annotated[Path, typer.Option("--out", "-o", help="Folder for what is made.")] = Path("uncertainty"),
-    method: Method = "local-homography",
+    method: Method = DEFAULT_METHOD,
     option: MethodOptions = None,
     depth_m: Annotated[
         list[str] | None,

@@ -83,7 +83,8 @@ def _public_names(file: Path) -> frozenset[str]:
 def _digests_of(names: frozenset[str]) -> str:
     """Of the sources behind public names; one that reaches far stands for all of rectbench."""
     modules = {_homes()[name] for name in names if name in _homes()}
-    files = sorted(PACKAGE.rglob("*.py")) if _FAR_REACHING & modules else source_closure(*sorted(modules))
+    everything = _FAR_REACHING & modules
+    files = sorted(PACKAGE.rglob("*.py")) if everything else source_closure(*sorted(modules), root=PACKAGE)
     return digest({str(file.relative_to(PACKAGE)): file_digest(file) for file in files})
 
 

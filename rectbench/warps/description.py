@@ -8,7 +8,7 @@
       R_rect_cam: ...               # 3x3, from the camera's frame to the rectified one
       target: ...                   # from rays to rectified pixels: perspective, or epipolar
     right: ...
-    notes: ...                      # what the method had to say of itself
+    notes: ...                      # what the method tells of itself
 
 What the targets mean stands in the file, as comments (`HEADER`).
 """
@@ -60,7 +60,19 @@ HEADER = """\
 
 
 def save_rectification(rect: Rectification, path: str | os.PathLike[str], **facts: Any) -> None:
-    """Write a rectification's description; `facts` are plain data put first, such as the method's name."""
+    """Write a rectification's description; `facts` are plain data put first, such as the method's name.
+
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> import rectbench as rb
+    >>> rect = rb.rectify(rb.load_rig("t265"), method="abraham")
+    >>> with TemporaryDirectory() as folder:
+    ...     file = Path(folder, "rectified.yaml")
+    ...     rb.save_rectification(rect, file, method="abraham")
+    ...     again = rb.load_rectification(file)
+    >>> bool((again.maps("left")[0] == rect.maps("left")[0]).all())
+    True
+    """
     write_atomically(Path(path), rectification_text(rect, **facts))
 
 
@@ -79,6 +91,8 @@ def load_rectification(path: str | os.PathLike[str]) -> Rectification:
     """The rectification of a file that `save_rectification` wrote, to the last bit.
 
     Raises InvalidInput in one line that names file, key and what was expected.
+
+    See `save_rectification` for an example.
     """
     source = Source.read(path)
     document = parse_document(source.text, source.path)

@@ -23,7 +23,7 @@ def test_nan_has_no_key() -> None:
         canonical_json({"f": math.nan})
 
 
-def test_seeds_hang_on_identity_alone_and_are_equal_in_another_process() -> None:
+def test_seeds_depend_on_identity_alone_and_are_equal_in_another_process() -> None:
     seed = derived_seed("pose", "street", "t265", 3)
     code = "from rectbench.store.keys import derived_seed; print(derived_seed('pose', 'street', 't265', 3))"
     other = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -26,6 +26,7 @@ from rectbench.applications.export.dataset_readme import readme_text
 from rectbench.errors import InvalidInput
 from rectbench.pairs.rendering import RENDERING_PACKAGES, Studio, placed, render_seed
 from rectbench.pairs.rig_numbers import rig_numbers
+from rectbench.plugins.defaults import DEFAULT_METHOD
 from rectbench.plugins.fitting import checked_options, fit
 from rectbench.plugins.rectifier import METHODS, Options, Rectifier, pose_problem
 from rectbench.plugins.scene import SCENES
@@ -51,7 +52,7 @@ class Export:
     spp: int = 64
     quality: str = "path"
     image_width: int | None = None
-    method: str = "local-homography"
+    method: str = DEFAULT_METHOD
     options: Mapping[str, Any] = field(default_factory=dict)
 
     def settings(self) -> dict[str, Any]:

@@ -44,6 +44,13 @@ class Resampler:
     where the warp does not shrink. It comes closest to the scene with `cv2.INTER_CUBIC`: linear
     interpolation blurs for a second time what is averaged. Labels want points and
     `cv2.INTER_NEAREST`.
+
+    >>> import numpy as np
+    >>> import rectbench as rb
+    >>> rig = rb.load_rig("t265")
+    >>> resample = rb.Resampler.of(rb.rectify(rig, method="abraham"), "left", filter="area")
+    >>> resample(np.zeros((rig.left.height, rig.left.width, 3), np.uint8)).shape
+    (805, 804, 3)
     """
 
     side: Side
