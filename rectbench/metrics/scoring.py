@@ -34,8 +34,8 @@ def metrics_of(asked: Iterable[str | Path]) -> dict[str, Plugin[Metric]]:
     """
     sources = [source for name in asked for source in BUNDLES.get(str(name), (str(name),))]
     found = {_source(source): _metric(source) for source in sources}
-    owners: dict[str, Plugin[Metric]] = {}
-    for plugin in (*registry(METRICS).plugins(), *found.values()):
+    owners = {column.key: plugin for plugin in registry(METRICS).plugins() for column in plugin.value.columns}
+    for plugin in found.values():
         for column in plugin.value.columns:
             owner = owners.setdefault(column.key, plugin)
             if (owner.name, owner.path) != (plugin.name, plugin.path):
