@@ -314,13 +314,13 @@ def run(
 
     A report of photographs, such as "real", takes them from the folder `data`.
 
-    The arguments are those of `experiments.execution.running.run`. Returns the rows of `results.parquet`.
+    The arguments are those of `runs.making.run`. Returns the rows of `results.parquet`.
     """
-    from rectbench.experiments.execution import running
     from rectbench.progress import progress_for
     from rectbench.reporting import write_report
+    from rectbench.runs import making
 
-    table = running.run(
+    table = making.run(
         report,
         out,
         methods=methods,
@@ -334,7 +334,7 @@ def run(
         fresh=fresh,
         progress=progress,
     )
-    write_report(running.run_folder(report, out), progress=progress_for(progress))
+    write_report(making.run_folder(report, out), progress=progress_for(progress))
     return table
 
 

@@ -116,7 +116,7 @@ CLAIMS = (
         because={
             "held": "Its cubics are fitted to just this measure, on these pixels.",
             "depends": "Its L is the least where it is minimised, on the 500 pixels. How far below Abraham's "
-            "it is hangs on the scale of Abraham's image, which the paper leaves open; and distortion free "
+            "it is depends on the scale of Abraham's image, which the paper leaves open; and distortion free "
             "of scale is another thing.",
             "not held": "Another method is as good on these pairs.",
             "not measured": "No pair could be measured.",
@@ -134,7 +134,7 @@ CLAIMS = (
         because={
             "held": "It knows the lens, while Hartley and Fusiello pay for undistorting the image first; on "
             "lenses without distortion the margin is smaller.",
-            "depends": "Hartley and Fusiello pay for undistorting the image first, so the margin hangs on "
+            "depends": "Hartley and Fusiello pay for undistorting the image first, so the margin depends on "
             "the lens; the row errors of all come from the same matches.",
             "not held": "The row errors of all methods come from the same matches; none is best by nature.",
             "not measured": "No pair could be measured.",

@@ -18,7 +18,7 @@ from rectbench.experiments.spec import REPORTS
 from rectbench.plugins.rectifier import METHODS
 from rectbench.plugins.scene import SCENES
 from rectbench.registry import Kind, registry
-from rectbench.runs.record import cpu_name, llvm_facts
+from rectbench.runs.machine import cpu_name, llvm_facts
 from rectbench.store.keys import versions
 from rectbench.store.store import Store
 

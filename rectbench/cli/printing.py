@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from rectbench.metrics import Uncertainty
     from rectbench.rigs import Rig, RigCovariance
     from rectbench.runs.comparing import Comparison
-    from rectbench.runs.gating import Verdict
+    from rectbench.runs.gating import Gating
 
 WIDE = 160
 """Columns assumed where the output is no terminal, so that a pipe gets whole lines."""
@@ -70,7 +70,7 @@ def show_names(kind: str, verbose: bool) -> None:
 
 def _described(kind: str) -> list[tuple[str, str]]:
     from rectbench.calibrations import load_rig, rig_names
-    from rectbench.experiments.spec import ESTIMATED
+    from rectbench.pairs.spec import ESTIMATED
     from rectbench.rigs import MOTIONS, POSES
 
     if kind == "motions":
@@ -141,19 +141,19 @@ def show_summary(folder: Path) -> None:
     screen.print(f"{len(found.results)} cells; page: {folder / 'index.html'}", soft_wrap=True)
 
 
-def show_verdict(verdict: Verdict) -> None:
+def show_gating(found: Gating) -> None:
     """What a gate found, worst first."""
     screen = console()
     for title, lines, style in (
-        ("regression", verdict.regressions, "red"),
-        ("incomplete", verdict.incomplete, "yellow"),
-        ("improvement", verdict.improvements, "green"),
-        ("new", verdict.new, "dim"),
+        ("regression", found.regressions, "red"),
+        ("incomplete", found.incomplete, "yellow"),
+        ("improvement", found.improvements, "green"),
+        ("new", found.new, "dim"),
     ):
         for line in lines:
             screen.print(Text(f"{title}: {line}", style=style), soft_wrap=True)
-    answer = {0: "good", 1: "worse than accepted"}.get(verdict.exit_code, "incomplete or nothing measured")
-    screen.print(f"{verdict.compared} cells compared: {answer}")
+    answer = {0: "good", 1: "worse than accepted"}.get(found.exit_code, "incomplete or nothing measured")
+    screen.print(f"{found.compared} cells compared: {answer}")
 
 
 def show_comparison(comparison: Comparison, metrics: list[str] | None) -> None:

@@ -53,7 +53,8 @@ def run(
     from rectbench import api
     from rectbench.cli import printing as terminal
     from rectbench.cli.configuring import overlaid, read_config, read_options
-    from rectbench.experiments.execution.running import Interrupted, run_folder
+    from rectbench.experiments.execution.running import Interrupted
+    from rectbench.runs.making import run_folder
     from rectbench.runs.record import unreadable_images
 
     settings, options = read_config(config) if config else ({}, {})
@@ -115,9 +116,9 @@ def gate(
     if accept:
         print(f"{gating.accept(folder, path)} cells accepted in {path}")
         return
-    verdict = gating.gate(folder, path)
-    terminal.show_verdict(verdict)
-    raise typer.Exit(verdict.exit_code)
+    found = gating.gate(folder, path)
+    terminal.show_gating(found)
+    raise typer.Exit(found.exit_code)
 
 
 def compare(

@@ -5,16 +5,11 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import Any
 
-from pydantic import TypeAdapter, ValidationError
-
-from rectbench.errors import InvalidInput
 from rectbench.plugins.metric import METRICS, TOPICS, Column, Metric, Shown
 from rectbench.registry import registry
 
 _UNITS = {"px": "px", "s": "s", "m": "m", "deg": "°"}
-_STORED = TypeAdapter(dict[str, tuple[Column, ...]])
 
 
 @dataclass(frozen=True)
@@ -104,20 +99,6 @@ def _catalogue(metrics: tuple[Metric, ...]) -> Catalogue:
 def _place(metric: Metric) -> tuple[int, str, bool, str]:
     rank = TOPICS.index(metric.topic) if metric.topic in TOPICS else len(TOPICS)
     return rank, metric.topic, not any(column.ranks for column in metric.columns), metric.name
-
-
-def stored_columns(metrics: Iterable[Metric]) -> dict[str, Any]:
-    """Columns by topic as JSON values: a run keeps those of metrics that are given by their files."""
-    stored: dict[str, Any] = _STORED.dump_python(dict(Catalogue.of(metrics).topics), mode="json")
-    return stored
-
-
-def catalogue_of(stored: Any) -> Catalogue:
-    """The known columns, and those that a run has kept. Raises InvalidInput for what are no columns."""
-    try:
-        return known().joined(_STORED.validate_python(stored or {}))
-    except ValidationError as error:
-        raise InvalidInput(f"a run's columns cannot be read: {error.errors()[0]['msg']}") from None
 
 
 def column(key: str) -> Column:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from collections.abc import Collection
+from typing import Annotated, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -19,6 +20,15 @@ class _Spec(BaseModel):
     motion: str
     seed: int
 
+    @property
+    def demands(self) -> frozenset[str]:
+        """What is to be made of it: `truth`, `images`, or nothing, as of photographs, which are there."""
+        return frozenset()
+
+    def demanding(self, demands: Collection[str]) -> Self:
+        """The same pair with other demands."""
+        return self
+
 
 class RenderedSpec(_Spec):
     """A pair to be rendered: a rig that stands in a scene."""
@@ -34,6 +44,13 @@ class RenderedSpec(_Spec):
     """Whether anything asks for the truth."""
     images: bool
     """Whether anything asks for the rendered images."""
+
+    @property
+    def demands(self) -> frozenset[str]:
+        return frozenset(name for name in ("truth", "images") if getattr(self, name))
+
+    def demanding(self, demands: Collection[str]) -> Self:
+        return self.model_copy(update={name: name in demands for name in ("truth", "images")})
 
 
 class PhotographedSpec(_Spec):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING
 
 from rectbench.metrics.catalogue import column
@@ -19,7 +19,8 @@ from rectbench.reporting.pictures.distortion_maps import draw_distortion_maps
 from rectbench.reporting.pictures.rectified import PIXELS_PER_INCH, draw_rectified
 from rectbench.reporting.sources import Sources
 from rectbench.reporting.tables.tabulation import methods_part, named, slug
-from rectbench.runs.run import Result, Run
+from rectbench.runs.rows import Row
+from rectbench.runs.run import Run
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -48,7 +49,7 @@ def _part_plans(part: Run, run: Run, sources: Sources) -> Iterator[Plan]:
 
 
 def _bar_plans(run: Run) -> Iterator[Plan]:
-    if run.group or run.is_of_photographs:
+    if run.group or not run.has_truth:
         yield from _pair_bar_plans(run)
         return
     if "row_error_mean_px" in run.metrics:
@@ -77,7 +78,7 @@ def _pair_bar_plans(run: Run) -> Iterator[Plan]:
             chart = pair_chart(run, "row error [px]", row_errors, pose, reference=1.0)
             name = named(run, "row-error", pose if len(run.noisy_poses) > 1 else "")
             caption = "Mean row error on each pair, measured in the images" + (
-                "." if run.is_of_photographs else " and against the truth."
+                " and against the truth." if run.has_truth else "."
             )
             yield _bars(run, chart, name, f"Row error, {pose} pose", caption)
     pose = run.geometric_pose
@@ -161,13 +162,13 @@ class Picture:
     stem: str
     title: str
     caption: str
-    draw: Callable[[Sources, tuple[Result, ...], Run], Figure]
+    draw: Callable[[Sources, tuple[Row, ...], Run], Figure]
     dpi: int = 160
     of_photographs: str = ""
     """The caption where the pair is photographs, if it is another one."""
     shown_as: str = "png"
 
-    def plan(self, run: Run, sources: Sources, results: tuple[Result, ...]) -> Plan:
+    def plan(self, run: Run, sources: Sources, results: tuple[Row, ...]) -> Plan:
         """Its figure of the pair that the results are of."""
         pair = results[0]
         return Plan(
@@ -175,7 +176,7 @@ class Picture:
             self.kind,
             f"{self.title}, {pair.rig}",
             f"{_pair_words(run, pair)}, {pair.pose} pose. {self._caption(run)}",
-            [[dict(r.row) for r in results], sources.version(pair)],
+            [list(map(asdict, results)), sources.version(pair)],
             lambda: self.draw(sources, results, run),
             dpi=self.dpi,
             shown_as=self.shown_as,
@@ -183,14 +184,13 @@ class Picture:
         )
 
     def _caption(self, run: Run) -> str:
-        return self.of_photographs if run.is_of_photographs and self.of_photographs else self.caption
+        return self.caption if run.has_truth else self.of_photographs or self.caption
 
 
-def _pair_words(run: Run, pair: Result) -> str:
+def _pair_words(run: Run, pair: Row) -> str:
     """What the picture's pair is called."""
-    if run.is_of_photographs:
-        return f"Pair {pair.scene}, rig {pair.rig}"
-    return f"Scene {pair.scene}, rig {pair.rig}, {pair.motion}"
+    motion = f", {pair.motion}" if run.has_truth else ""
+    return f"{run.pair_source.scene_word.capitalize()} {pair.scene}, rig {pair.rig}{motion}"
 
 
 _LINES = (
@@ -255,7 +255,7 @@ _CHARTS: dict[str, Callable[[Run], Iterator[Plan]]] = {
 }
 
 
-def _representative(run: Run, rig: str) -> tuple[Result, ...]:
+def _representative(run: Run, rig: str) -> tuple[Row, ...]:
     """The results of the first pair of a rig that was measured at all."""
     pose = run.noisy_poses[0]
     candidates = run.select(rig=rig, pose=pose)

@@ -6,26 +6,30 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
-from typing import Any, Literal, Protocol, TypeVar
+from typing import Literal, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rectbench.errors import InvalidInput, InvalidResult, RectbenchError
-from rectbench.experiments.tasks import CellTask
+from rectbench.experiments.execution.cells import cell_inputs, problem_of
+from rectbench.experiments.tasks import Cell, CellTask
 from rectbench.metrics import Jacobians, distortion, distortion_of
 from rectbench.pairs.opening import open_pair
 from rectbench.pairs.pair import Pair
-from rectbench.reporting import recall
+from rectbench.plugins.fitting import checked_options, fit
+from rectbench.plugins.rectifier import METHODS
+from rectbench.registry import registry
 from rectbench.rigs import Rig
-from rectbench.runs.run import Result, Run
+from rectbench.runs.record import RUN_FILE
+from rectbench.runs.rows import Row
+from rectbench.runs.run import Run
+from rectbench.store.keys import digest
 from rectbench.store.store import Store
 from rectbench.types import FloatArray
 from rectbench.warps import Rectification
 
 Side = Literal["left", "right"]
-Identity = tuple[Any, ...]
 Made = TypeVar("Made")
 _FINGERPRINT = "distortion_native"
 _SAME_FIT = 1e-3
@@ -56,14 +60,14 @@ class Sources:
     version : changes with whatever changes those answers while the cell's row stays the same.
     """
 
-    pair: Callable[[Result], Pair]
-    rectification: Callable[[Result], Rectification]
+    pair: Callable[[Row], Pair]
+    rectification: Callable[[Row], Rectification]
     distortion: Callable[[Rectification, Rig, Side, FloatArray], FloatArray]
-    reconstruction: Callable[[Result], Cloud]
-    version: Callable[[Result], str] = lambda result: ""
+    reconstruction: Callable[[Row], Cloud]
+    version: Callable[[Row], str] = lambda result: ""
 
 
-def attempted(result: Result, make: Callable[[], Made]) -> Made | str:
+def attempted(result: Row, make: Callable[[], Made]) -> Made | str:
     """What `make` gives of a cell, or the reason why its picture is missing."""
     if not result.ok:
         return f"{result.status}: {result.reason}" if result.reason else result.status
@@ -75,7 +79,7 @@ def attempted(result: Result, make: Callable[[], Made]) -> Made | str:
 
 def sources_of(run: Run) -> Sources:
     """The bench's store and the project's own metrics."""
-    recalled = _Recalled(run.folder)
+    recalled = _Recalled(run)
     return Sources(
         pair=recalled.pair,
         rectification=recalled.rectification,
@@ -88,54 +92,56 @@ def sources_of(run: Run) -> Sources:
 class _Recalled:
     """Cells of a finished run: each fitted once, the last pair kept, since several figures show them."""
 
-    def __init__(self, folder: Path) -> None:
-        self._folder = folder
+    def __init__(self, run: Run) -> None:
+        self._run = run
         self._store = Store.default()
-        self._fitted: dict[Identity, Rectification] = {}
+        self._fitted: dict[Cell, Rectification] = {}
         self._pair: Pair | None = None
 
     @cached_property
-    def _tasks(self) -> dict[Identity, CellTask]:
-        return recall.read_tasks(self._folder)
+    def _tasks(self) -> dict[Cell, CellTask]:
+        return {task.cell: task for task in self._run.record.cells}
 
-    def _task(self, result: Result) -> CellTask:
-        task = self._tasks.get(recall.identity_of(result.row))
+    def _task(self, result: Row) -> CellTask:
+        task = self._tasks.get(result.cell)
         if task is None:
-            raise InvalidInput(f"{self._folder / 'run.json'} does not plan {result.method} on {result.pair}")
+            file = self._run.folder / RUN_FILE
+            raise InvalidInput(f"{file} does not plan {result.method} on {result.pair}")
         return task
 
-    def pair(self, result: Result) -> Pair:
-        return self._opened(self._task(result))
-
-    def _opened(self, task: CellTask) -> Pair:
-        if self._pair is None or self._pair.spec != task.pair:
-            self._pair = open_pair(task.pair, self._store)
+    def pair(self, result: Row) -> Pair:
+        spec = self._task(result).pair
+        if self._pair is None or self._pair.spec != spec:
+            self._pair = open_pair(spec, self._store)
         return self._pair
 
-    def rectification(self, result: Result) -> Rectification:
-        key = recall.identity_of(result.row)
-        if key not in self._fitted:
-            task = self._task(result)
-            rectification = recall.recalled_rectification(task, self._opened(task))
+    def rectification(self, result: Row) -> Rectification:
+        if result.cell not in self._fitted:
+            rectification = _fitted_again(self._task(result), self.pair(result))
             _require_same(rectification, result)
-            self._fitted[key] = rectification
-        return self._fitted[key]
+            self._fitted[result.cell] = rectification
+        return self._fitted[result.cell]
 
-    def reconstruction(self, result: Result) -> Cloud:
+    def reconstruction(self, result: Row) -> Cloud:
         from rectbench.matching.dense.reconstruction import reconstruct
 
         images = self.pair(result).images
         return reconstruct(self.rectification(result), images.left, images.right)
 
-    def version(self, result: Result) -> str:
+    def version(self, result: Row) -> str:
         try:
-            task = self._task(result)
-            return recall.recalled_version(task, self._opened(task))
+            pair = self.pair(result)
+            return digest([cell_inputs(self._task(result), pair), pair.image_inputs])
         except RectbenchError as error:  # a plugin or a rig that is not on this machine
             return str(error)
 
 
-def _require_same(rectification: Rectification, result: Result) -> None:
+def _fitted_again(task: CellTask, pair: Pair) -> Rectification:
+    method = registry(METHODS).get(task.method_source)
+    return fit(method, problem_of(task, pair), checked_options(method, task.options))
+
+
+def _require_same(rectification: Rectification, result: Row) -> None:
     """Raise InvalidResult where the new fit is not the one the run measured: a picture must not lie."""
     measured = result.metrics.get(_FINGERPRINT)
     if measured is None:

@@ -1,1 +1,4 @@
-"""The record of a run, its rows, the gate and comparisons. Imports experiments and what is below."""
+"""What a run leaves behind: its record and rows, read once; the gate, comparisons, verdicts on claims.
+
+Imports experiments and what is below.
+"""

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
-from scipy.stats import bootstrap
 
+from rectbench.runs.bootstrap import interval
 from rectbench.runs.gating import KEY
-from rectbench.runs.record import LEADING, TEXTS, read_results
+from rectbench.runs.record import LEADING, TEXTS
+from rectbench.runs.run import read_run
 from rectbench.types import FloatArray
 
-CONFIDENCE = 0.95
 RESAMPLES = 2000
 LEAST_PAIRS = 3
 """Fewer pairs than these carry no interval."""
@@ -35,7 +34,9 @@ class Comparison:
 
 def compare(a: Path, b: Path) -> Comparison:
     """Compare two runs; raises InvalidInput where either cannot be read."""
-    both = read_results(a).merge(read_results(b), on=KEY, how="outer", suffixes=("_a", "_b"), indicator=True)
+    both = read_run(a).table.merge(
+        read_run(b).table, on=KEY, how="outer", suffixes=("_a", "_b"), indicator=True
+    )
     ok = (both["status_a"] == "ok") & (both["status_b"] == "ok")
     unpaired = tuple(_why_unpaired(row) for _, row in both[~ok].iterrows() if _differs(row))
     metrics = [
@@ -71,19 +72,12 @@ def _difference(a: pd.Series[float], b: pd.Series[float]) -> dict[str, float]:
 
 
 def _interval(differences: FloatArray) -> tuple[float, float]:
+    """That of the median, each difference being a cluster of its own."""
     if len(differences) < LEAST_PAIRS:
         return np.nan, np.nan
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # equal differences have an interval of no width, and that is right
-        found = bootstrap(
-            (differences,),
-            np.median,
-            n_resamples=RESAMPLES,
-            confidence_level=CONFIDENCE,
-            method="percentile",
-            rng=np.random.default_rng(0),
-        )
-    return float(found.confidence_interval.low), float(found.confidence_interval.high)
+    return interval(
+        list(differences[:, None, None]), lambda drawn: np.median(drawn[..., 0, 0], axis=-1), RESAMPLES
+    )
 
 
 def _differs(row: pd.Series[str]) -> bool:

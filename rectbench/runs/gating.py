@@ -6,21 +6,23 @@ cells out is incomplete rather than good. Times differ from machine to machine a
 
 from __future__ import annotations
 
-import json
 import math
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
 import pandas as pd
 
 from rectbench.errors import InvalidInput, UnknownName
-from rectbench.experiments.spec import ESTIMATED, REPORTS
-from rectbench.experiments.tasks import IDENTITY
-from rectbench.metrics.catalogue import catalogue_of
+from rectbench.experiments.spec import REPORTS
+from rectbench.experiments.tasks import IDENTITY, Cell
+from rectbench.pairs.spec import ESTIMATED
 from rectbench.plugins.metric import Column
 from rectbench.registry import registry
-from rectbench.runs.record import read_facts, read_results
+from rectbench.runs.record import read_record
+from rectbench.runs.rows import Row, read_rows
+from rectbench.runs.run import read_run
+from rectbench.writing import write_atomically
 
 KEY = [name for name in IDENTITY if name != "report"]
 
@@ -33,7 +35,7 @@ and all that follows from the pose moves a little."""
 
 
 @dataclass
-class Verdict:
+class Gating:
     """What a gate found, a line each."""
 
     compared: int = 0
@@ -53,17 +55,17 @@ class Verdict:
 
 def accepted_path(run_dir: Path) -> Path:
     """Where the accepted numbers of the run's report lie: beside the report's file."""
-    facts = read_facts(run_dir)
-    if "photographs" in facts:
+    record = read_record(run_dir)
+    if record.photographs is not None:
         raise InvalidInput(
             f"{run_dir} is a run of photographs, whose numbers are not the report's; expected --accepted FILE"
         )
     try:
-        report = registry(REPORTS).get(facts["report"]).path
+        report = registry(REPORTS).get(record.report).path
     except UnknownName:
-        if not facts.get("report_file"):
+        if record.report_file is None:
             raise
-        report = Path(facts["report_file"])
+        report = Path(record.report_file)
     return report.with_suffix(".accepted.csv")
 
 
@@ -72,61 +74,56 @@ def accept(run_dir: Path, path: Path) -> int:
 
     Raises InvalidInput for a run that measured nothing or was no whole run of its report.
     """
-    table, facts = read_results(run_dir), read_facts(run_dir)
-    if not (table["status"] == "ok").any():
+    run = read_run(run_dir)
+    if not any(row.ok for row in run.results):
         raise InvalidInput(f"{run_dir} measured nothing; there is nothing to accept")
-    if not facts.get("is_whole"):
+    if not run.record.is_whole:
         raise InvalidInput(f"{run_dir} is a part of its report; expected a run without a selection")
-    gated = [column.key for column in catalogue_of(facts.get("columns")).gated]
-    columns = [name for name in gated if name in table and table[name].notna().any()]
-    unfinished = path.with_name(f".{path.name}.unfinished")
-    try:
-        table[[*KEY, "status", *columns]].to_csv(unfinished, index=False, float_format="%.9g")
-        unfinished.replace(path)
-    except OSError as error:
-        raise InvalidInput(f"{path} cannot be written: {error.strerror}") from None
+    gated = [column.key for column in run.catalogue.gated]
+    columns = [name for name in gated if name in run.table and run.table[name].notna().any()]
+    table = run.table[[*KEY, "status", *columns]]
+    write_atomically(path, table.to_csv(index=False, float_format="%.9g"))
     return len(table)
 
 
-def gate(run_dir: Path, path: Path) -> Verdict:
+def gate(run_dir: Path, path: Path) -> Gating:
     """Compare a run with the accepted numbers in the file `path`.
 
     Raises InvalidInput where either cannot be read.
     """
-    numbers = _read_accepted(path)
-    run, accepted = _by_key(read_results(run_dir)), _by_key(numbers)
-    facts, verdict = read_facts(run_dir), Verdict()
-    is_whole, gated = bool(facts.get("is_whole")), catalogue_of(facts.get("columns")).gated
-    unknown = set(map(str, numbers)) - {*KEY, "status", *(column.key for column in gated)}
-    verdict.incomplete += [f"{name}: no metric of the run has this column" for name in sorted(unknown)]
-    for key, known in accepted.items():
-        if key not in run:
-            missing = verdict.regressions if is_whole else verdict.incomplete
-            missing.append(f"{_name(key)}: the cell is missing")
-            continue
-        _compare(_name(key), known, run[key], gated, verdict)
-    verdict.new += [f"{_name(key)}: no accepted numbers" for key in run if key not in accepted]
-    return verdict
+    run, accepted = read_run(run_dir), _read_accepted(path)
+    columns = [column for column in run.catalogue.gated if column.key in accepted]
+    now = _by_cell(run.results)
+    known = _by_cell(read_rows(accepted.to_dict("records"), path))
+    gating = Gating()
+    unknown = set(map(str, accepted)) - {*IDENTITY, "status", *(column.key for column in columns)}
+    gating.incomplete += [f"{name}: no metric of the run has this column" for name in sorted(unknown)]
+    for cell, row in known.items():
+        if cell in now:
+            _compare(row, now[cell], columns, gating)
+        else:
+            missing = gating.regressions if run.record.is_whole else gating.incomplete
+            missing.append(f"{_name(row)}: the cell is missing")
+    gating.new += [f"{_name(row)}: no accepted numbers" for cell, row in now.items() if cell not in known]
+    return gating
 
 
-def _compare(
-    cell: str, known: dict[str, Any], now: dict[str, Any], gated: list[Column], verdict: Verdict
-) -> None:
-    if known["status"] != now["status"]:
-        kind = verdict.improvements if now["status"] == "ok" else verdict.regressions
-        because = f" ({now['reason']})" if now.get("reason") else ""
-        kind.append(f"{cell}: status {known['status']} -> {now['status']}{because}")
+def _compare(known: Row, now: Row, columns: Sequence[Column], gating: Gating) -> None:
+    if known.status != now.status:
+        kind = gating.improvements if now.ok else gating.regressions
+        because = f" ({now.reason})" if now.reason else ""
+        kind.append(f"{_name(known)}: status {known.status} -> {now.status}{because}")
         return
-    if now["status"] != "ok":
+    if not now.ok:
         return
-    verdict.compared += 1
-    slack = ESTIMATED_SLACK if known["pose"] == ESTIMATED else 1.0
-    for column in (column for column in gated if column.key in known):
-        accepted, value = float(known[column.key]), float(now.get(column.key, math.nan))
+    gating.compared += 1
+    slack = ESTIMATED_SLACK if known.pose == ESTIMATED else 1.0
+    for column in columns:
+        accepted, value = (row.metrics.get(column.key, math.nan) for row in (known, now))
         change = column.change(accepted, value, slack)
         if change != "same":
-            kind = verdict.improvements if change == "better" else verdict.regressions
-            kind.append(f"{cell}: {column.key} {accepted:.6g} -> {value:.6g}")
+            kind = gating.improvements if change == "better" else gating.regressions
+            kind.append(f"{_name(known)}: {column.key} {accepted:.6g} -> {value:.6g}")
 
 
 def _read_accepted(path: Path) -> pd.DataFrame:
@@ -134,25 +131,22 @@ def _read_accepted(path: Path) -> pd.DataFrame:
         raise InvalidInput(
             f"there are no accepted numbers at {path}; `rectbench gate RUN --accept` makes them"
         )
+    texts = dict.fromkeys([*KEY, "status"], str)
     try:
-        table = pd.read_csv(
-            path, dtype=dict.fromkeys([*KEY, "status"], str), keep_default_na=False, na_values=[""]
-        )
-        table["seed"] = table["seed"].astype(int)
-    except (OSError, ValueError, KeyError) as error:
+        table = pd.read_csv(path, dtype=texts, keep_default_na=False, na_values=[""])
+    except (OSError, ValueError) as error:
         raise InvalidInput(f"{path} cannot be read: {' '.join(str(error).split())}") from None
-    missing = [name for name in (*KEY, "status") if name not in table]
-    if missing:
+    if missing := [name for name in texts if name not in table]:
         raise InvalidInput(f"{path} lacks the column {missing[0]}")
-    return table
+    return table.assign(report="")
 
 
-def _by_key(table: pd.DataFrame) -> dict[tuple[Any, ...], dict[str, Any]]:
-    rows = table.to_dict("records")
-    return {tuple(row[name] for name in KEY): {str(k): v for k, v in row.items()} for row in rows}
+def _by_cell(rows: Iterable[Row]) -> dict[Cell, Row]:
+    """The rows by what they are of, whichever report they stand in."""
+    return {row.cell.model_copy(update={"report": ""}): row for row in rows}
 
 
-def _name(key: tuple[Any, ...]) -> str:
-    scene, rig, motion, pose, method, options, seed = key
-    variant = "" if options == "{}" else " " + ",".join(f"{k}={v}" for k, v in json.loads(options).items())
-    return f"{method}{variant} on {scene}/{rig}/{motion}/{pose}/seed {seed}"
+def _name(row: Row) -> str:
+    variant = ",".join(f"{k}={v}" for k, v in row.options.items())
+    place = f"{row.scene}/{row.rig}/{row.motion}/{row.pose}/seed {row.seed}"
+    return f"{row.cell.method}{variant and ' '}{variant} on {place}"

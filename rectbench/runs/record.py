@@ -4,45 +4,146 @@ from __future__ import annotations
 
 import json
 import os
-import platform
 import shlex
-import subprocess
-import tempfile
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import pandas as pd
+from pydantic import BaseModel, ConfigDict, ValidationError
 
-from rectbench import llvm
-from rectbench.errors import InvalidInput, Unavailable
+from rectbench.errors import InvalidInput
 from rectbench.experiments.execution.outcomes import Outcome
-from rectbench.experiments.planning import Plan
-from rectbench.experiments.tasks import IDENTITY
-from rectbench.metrics.catalogue import catalogue_of, stored_columns
+from rectbench.experiments.execution.running import Execution
+from rectbench.experiments.planning import Plan, Selection
+from rectbench.experiments.spec import Report
+from rectbench.experiments.tasks import IDENTITY, CellTask
+from rectbench.metrics.catalogue import Catalogue, known
 from rectbench.metrics.scoring import metrics_of
-from rectbench.pairs.finding.photographs import UNREADABLE
+from rectbench.pairs.finding.photographs import UNREADABLE, Photographs
+from rectbench.plugins.metric import Column
 from rectbench.registry import is_path
-from rectbench.store.closure import PACKAGE
-from rectbench.store.keys import canonical_json, versions
+from rectbench.runs.machine import Machine
+from rectbench.store.keys import canonical_json
+from rectbench.writing import write_atomically
 
 RUN_FILE, PARQUET, CSV = "run.json", "results.parquet", "results.csv"
+VERSION: Literal[2] = 2
+"""Of the layout of run.json."""
 LEADING = (*IDENTITY, "status", "reason")
 TEXTS = ("group", "notes")
 """Columns that are neither identity nor metric: the part of the report, what the method says of itself."""
-PACKAGES = (
-    "rectbench",
-    "numpy",
-    "scipy",
-    "opencv-contrib-python-headless",
-    "mitsuba",
-    "drjit",
-    "pandas",
-    "pyarrow",
-    "pydantic",
-    "karellen-llvm-core",
-)
+SHOWN_CHARACTERS = 60
+
+
+class _Frozen(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class FoundPair(_Frozen):
+    """Two photographs and the files of their calibration, as seen from the folder they were found in."""
+
+    name: str
+    rig: str
+    left: str
+    right: str
+    calibration: tuple[str, ...]
+
+
+class LeftOutFile(_Frozen):
+    """A file of that folder which no pair has, and why."""
+
+    path: str
+    reason: str
+
+
+class FoundPhotographs(_Frozen):
+    """What a run of photographs was made from."""
+
+    pairs: tuple[FoundPair, ...]
+    remarks: Mapping[str, tuple[str, ...]]
+    """By rig: what was assumed of its calibration."""
+    left_out: tuple[LeftOutFile, ...]
+
+    @classmethod
+    def of(cls, found: Photographs) -> FoundPhotographs:
+        """The same in plain words."""
+        below = found.below
+        pairs = tuple(
+            FoundPair(
+                name=pair.name,
+                rig=pair.calibration.name,
+                left=below(pair.left),
+                right=below(pair.right),
+                calibration=tuple(map(below, pair.calibration.files)),
+            )
+            for pair in found.pairs
+        )
+        return cls(
+            pairs=pairs,
+            remarks={one.name: one.remarks for one in found.calibrations if one.remarks},
+            left_out=tuple(LeftOutFile(path=below(out.path), reason=out.reason) for out in found.left_out),
+        )
+
+
+class RunRecord(Machine):
+    """All that run.json says: what was to be run, what it ran on, and what it took."""
+
+    version: Literal[2]
+    report: str
+    report_file: str | None
+    """The absolute path of the report's file, where it was given as one."""
+    command: str
+    """The command line that makes this run again."""
+    seeds: tuple[int, ...]
+    selection: Selection
+    is_whole: bool
+    """Whether every cell of the report is among its cells, under the report's own options."""
+    wall_s: float
+    jobs: int
+    threads_per_job: int
+    dask: str | None
+    spec: Report
+    data: str | None
+    """The folder of the photographs."""
+    photographs: FoundPhotographs | None
+    columns: Mapping[str, tuple[Column, ...]]
+    """By topic: those of metrics that were given by their files, which may be gone when the run is read."""
+    cells: tuple[CellTask, ...]
+    """As they were planned; a row each."""
+
+    @classmethod
+    def of(cls, execution: Execution, wall_s: float, report_file: str | None = None) -> RunRecord:
+        """The record of a plan that was executed on this machine."""
+        plan, found = execution.plan, execution.plan.photographs
+        return cls(
+            version=VERSION,
+            report=plan.report.name,
+            report_file=report_file,
+            command=_command(plan),
+            seeds=tuple(sorted({task.cell.seed for task in plan.tasks})),
+            selection=plan.selection,
+            is_whole=plan.is_whole,
+            wall_s=round(wall_s, 2),
+            jobs=execution.jobs,
+            threads_per_job=execution.threads_per_job,
+            dask=execution.dask,
+            spec=plan.report,
+            data=None if found is None else str(found.folder),
+            photographs=None if found is None else FoundPhotographs.of(found),
+            columns=_foreign_columns(plan),
+            cells=plan.tasks,
+            **Machine.here().model_dump(),
+        )
+
+    def to_json(self, *without: str) -> str:
+        """Its JSON, indented, the fields `without` left out."""
+        return json.dumps(self.model_dump(mode="json", exclude=set(without)), indent=1, ensure_ascii=False)
+
+
+def _foreign_columns(plan: Plan) -> Mapping[str, tuple[Column, ...]]:
+    asked = dict.fromkeys(name for task in plan.tasks for name in task.metrics if is_path(name))
+    return Catalogue.of(plugin.value for plugin in metrics_of(asked).values()).topics
 
 
 def table_of(plan: Plan, outcomes: Sequence[Outcome]) -> pd.DataFrame:
@@ -54,74 +155,11 @@ def table_of(plan: Plan, outcomes: Sequence[Outcome]) -> pd.DataFrame:
         rows.append(
             {**task.cell.model_dump(), **ended, "group": task.group, **outcome.metrics, "notes": notes}
         )
-    catalogue = catalogue_of(_foreign_columns(plan))
+    catalogue = known().joined(_foreign_columns(plan))
     measured = {name for outcome in outcomes for name in outcome.metrics}
     metrics = catalogue.in_display_order(measured.union(catalogue.promised))
     table = pd.DataFrame(rows, columns=[*LEADING, "group", *metrics, "notes"])
     return table.astype({**dict.fromkeys(metrics, "float64"), "seed": "int64"})
-
-
-def _foreign_columns(plan: Plan) -> dict[str, Any]:
-    """The columns of metrics that are given by their files, which may be gone when the run is read."""
-    asked = dict.fromkeys(name for task in plan.tasks for name in task.metrics if is_path(name))
-    return stored_columns(plugin.value for plugin in metrics_of(asked).values())
-
-
-def facts_of(plan: Plan) -> dict[str, Any]:
-    """What run.json says: the plan, and the machine and software it ran on."""
-    return {
-        "report": plan.report.name,
-        "title": plan.report.title,
-        "description": plan.report.description,
-        "command": _command(plan),
-        "git_revision": git_revision(),
-        "cpu": cpu_name(),
-        "cores": os.cpu_count(),
-        "llvm": llvm_facts(),
-        "python": platform.python_version(),
-        "platform": platform.platform(),
-        "seeds": sorted({task.cell.seed for task in plan.tasks}),
-        "versions": dict(versions(*PACKAGES)),
-        "selection": asdict(plan.selection),
-        "is_whole": plan.is_whole,
-        "spec": plan.report.model_dump(mode="json"),
-        "figures": plan.report.figures,
-        "columns": _foreign_columns(plan),
-        **_photograph_facts(plan),
-        "cells": [task.model_dump(mode="json") for task in plan.tasks],
-    }
-
-
-def _photograph_facts(plan: Plan) -> dict[str, Any]:
-    """The folder of a report of photographs: its pairs, what was assumed, and what was left out and why."""
-    found = plan.photographs
-    if found is None:
-        return {}
-    below = found.below
-    pairs = [
-        {
-            "name": pair.name,
-            "rig": pair.calibration.name,
-            "left": below(pair.left),
-            "right": below(pair.right),
-            "calibration": [below(file) for file in pair.calibration.files],
-        }
-        for pair in found.pairs
-    ]
-    return {
-        "data": str(found.folder),
-        "photographs": {
-            "pairs": pairs,
-            "remarks": {one.name: list(one.remarks) for one in found.calibrations if one.remarks},
-            "left_out": [{"path": below(out.path), "reason": out.reason} for out in found.left_out],
-        },
-    }
-
-
-def unreadable_images(folder: Path) -> list[str]:
-    """The images of a run of photographs that could not be read; none of other runs."""
-    photographs = read_facts(folder).get("photographs", {})
-    return [out["path"] for out in photographs.get("left_out", ()) if out["reason"] == UNREADABLE]
 
 
 def check_writable(folder: Path) -> None:
@@ -131,85 +169,58 @@ def check_writable(folder: Path) -> None:
         raise InvalidInput(f"{folder} cannot be written; expected a folder, or a place for one")
 
 
-def write_run(folder: Path, table: pd.DataFrame, facts: Mapping[str, Any]) -> None:
+def write_run(folder: Path, table: pd.DataFrame, record: RunRecord) -> None:
     """Write the three files; run.json last, so that it speaks of the results beside it.
 
     Raises Unavailable where the folder cannot be written.
     """
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        _replace(folder / PARQUET, table.to_parquet(index=False))
-        _replace(folder / CSV, table.to_csv(index=False).encode())
-        _replace(folder / RUN_FILE, (json.dumps(facts, indent=1, ensure_ascii=False) + "\n").encode())
-    except OSError as error:
-        raise Unavailable(f"{folder} cannot be written: {error.strerror or error}") from error
+    write_atomically(folder / PARQUET, table.to_parquet(index=False))
+    write_atomically(folder / CSV, table.to_csv(index=False))
+    write_atomically(folder / RUN_FILE, record.to_json() + "\n")
 
 
-def read_results(folder: Path) -> pd.DataFrame:
-    """The rows of a run's folder; raises InvalidInput where there are none to be read."""
-    path = folder / PARQUET
-    if not path.is_file():
-        raise InvalidInput(f"{folder} is no run's folder: {PARQUET} is missing")
-    try:
-        table = pd.read_parquet(path)
-    except (OSError, ValueError) as error:
-        raise InvalidInput(f"{path} cannot be read: {' '.join(str(error).split())}") from None
-    missing = [name for name in LEADING if name not in table.columns]
-    if missing:
-        raise InvalidInput(f"{path} lacks the column {missing[0]}")
-    return table
-
-
-def read_facts(folder: Path) -> dict[str, Any]:
-    """run.json of a run's folder; raises InvalidInput where it cannot be read."""
+def read_record(folder: Path) -> RunRecord:
+    """run.json of a run's folder; raises InvalidInput where it cannot be read, with its first fault."""
     path = folder / RUN_FILE
     try:
-        facts = json.loads(path.read_text(encoding="utf-8"))
+        found = json.loads(path.read_text(encoding="utf-8"))
     except FileNotFoundError:
         raise InvalidInput(f"{folder} is no run's folder: {RUN_FILE} is missing") from None
-    except (OSError, ValueError) as error:
-        raise InvalidInput(f"{path} cannot be read: {error}") from None
-    if not isinstance(facts, dict) or "report" not in facts:
-        raise InvalidInput(f"{path} names no report")
-    return facts
-
-
-def git_revision() -> str | None:
-    """The commit of the source this runs from, marked where files differ from it; None outside of git."""
-    command = [
-        "git",
-        "-C",
-        str(PACKAGE.parent),
-        "describe",
-        "--always",
-        "--dirty",
-        "--abbrev=40",
-        "--exclude=*",
-    ]
+    except (OSError, ValueError, RecursionError) as error:
+        raise InvalidInput(f"{path} cannot be read: {error}; expected JSON") from None
+    if not isinstance(found, dict):
+        raise InvalidInput(f"{path} holds {_shown(found)}; expected an object")
+    if found.get("version") != VERSION:
+        version = _shown(found["version"]) if "version" in found else "nothing, as before there were versions"
+        raise InvalidInput(
+            f"{path}: version is {version}; expected {VERSION}, from a run made by this rectbench"
+        )
     try:
-        done = subprocess.run(command, capture_output=True, text=True, timeout=10, check=True)
-    except (OSError, subprocess.SubprocessError):
-        return None
-    return done.stdout.strip()
+        return RunRecord.model_validate(found)
+    except ValidationError as error:
+        raise InvalidInput(f"{path}: {first_fault(error)}") from None
 
 
-def cpu_name() -> str:
-    """The processor's name, as the system tells it."""
-    info = Path("/proc/cpuinfo")
-    lines = info.read_text().splitlines() if info.exists() else []
-    names = (line.partition(":")[2].strip() for line in lines if line.startswith("model name"))
-    return next(names, platform.processor() or platform.machine())
+def first_fault(error: ValidationError) -> str:
+    """The first thing wrong with a file's values, in a line: key, value, what was expected."""
+    fault = error.errors(include_url=False)[0]
+    key = ".".join(map(str, fault["loc"]))
+    if fault["type"] == "missing":
+        return f"{key} is missing"
+    said = " ".join(fault["msg"].removeprefix("Value error, ").split())
+    expected = said.removeprefix("Input should be ")
+    return f"{key} is {_shown(fault['input'])}; " + (f"expected {expected}" if expected != said else said)
 
 
-def llvm_facts() -> dict[str, Any]:
-    """Which libLLVM compiles the kernels, its version, or why there is none."""
-    problem = llvm.problem()
-    facts: dict[str, Any] = {"path": os.environ.get(llvm.PATH_VARIABLE)}
-    if problem:
-        return {**facts, "problem": problem}
-    import drjit
+def _shown(value: Any) -> str:
+    text = " ".join(repr(value).split())
+    return text if len(text) <= SHOWN_CHARACTERS else f"{text[:SHOWN_CHARACTERS]}..."
 
-    return {**facts, "version": ".".join(map(str, drjit.detail.llvm_version()))}
+
+def unreadable_images(folder: Path) -> list[str]:
+    """The images of a run of photographs that could not be read; none of other runs."""
+    found = read_record(folder).photographs
+    return [] if found is None else [out.path for out in found.left_out if out.reason == UNREADABLE]
 
 
 def _command(plan: Plan) -> str:
@@ -223,16 +234,3 @@ def _command(plan: Plan) -> str:
     for method, options in plan.selection.options.items():
         words += [f"--option {method}.{name}={canonical_json(value)}" for name, value in options.items()]
     return " ".join(words)
-
-
-def _replace(path: Path, content: bytes) -> None:
-    descriptor, unfinished = tempfile.mkstemp(prefix=f".{path.name}-", dir=path.parent)
-    try:
-        with os.fdopen(descriptor, "wb") as stream:
-            stream.write(content)
-            stream.flush()
-            os.fsync(stream.fileno())
-        Path(unfinished).chmod(0o644)
-        Path(unfinished).replace(path)
-    finally:
-        Path(unfinished).unlink(missing_ok=True)

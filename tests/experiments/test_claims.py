@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,8 @@ import pytest
 from pydantic import ValidationError
 
 import rectbench as rb
-from rectbench.experiments.claims import judged_claims
+from rectbench.runs.judging import judged_claims
+from rectbench.runs.rows import read_rows
 from tests.experiments.fakes import small_report
 
 BECAUSE = {verdict: verdict.upper() for verdict in ("held", "not held", "depends", "not measured")}
@@ -20,6 +22,7 @@ def rows(method: str, values: Any, **fields: Any) -> list[dict[str, Any]]:
     """Rows of one method: values [pairs, seeds] of the column `x`."""
     return [
         {
+            "report": "small",
             "scene": f"scene{pair}",
             "rig": "rig",
             "motion": "sideways",
@@ -39,7 +42,8 @@ def rows(method: str, values: Any, **fields: Any) -> list[dict[str, Any]]:
 
 def judge(table: list[dict[str, Any]], *statements: rb.Statement) -> Any:
     claim = rb.Claim(name="claim", says="So it is.", statements=statements, because=BECAUSE)
-    (judged,) = judged_claims([claim.model_dump(mode="json")], table)
+    claim = rb.Claim.model_validate(claim.model_dump(mode="json"))
+    (judged,) = judged_claims([claim], read_rows(table, Path("rows")), ["x"] if table else [])
     return judged
 
 

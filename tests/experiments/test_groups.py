@@ -9,9 +9,9 @@ import pytest
 from pydantic import ValidationError
 
 import rectbench as rb
-from rectbench.experiments.execution.running import run
 from rectbench.experiments.planning import Plan, Selection, make_plan
 from rectbench.metrics.scoring import metrics_of
+from rectbench.runs.making import run
 from tests.experiments.fakes import write_method, write_scene
 
 FISHEYE = rb.Group(
@@ -88,11 +88,24 @@ def test_one_cell_stands_in_one_part() -> None:
         make_plan(report(FISHEYE, twin))
 
 
+def test_pairs_that_are_stated_are_a_grid_with_holes() -> None:
+    given: dict[str, Any] = {"name": "pairs", "title": "Pairs", "methods": ("abraham",), "figures": ("bars",)}
+    stated = make_plan(rb.Report(**given, pairs=FISHEYE.pairs))
+    assert [pair.rig for pair in stated.pairs] == ["t265", "sony-as200v"]
+    assert (stated.tasks[0].group, stated.is_whole) == ("", True)
+
+
 @pytest.mark.parametrize(
     ("fields", "message"),
     [
         ({"scenes": ("street",)}, "scenes stand beside groups"),
+        ({"pairs": FISHEYE.pairs}, "pairs stand beside groups"),
         ({"groups": (FISHEYE, FISHEYE)}, "expected a name each"),
+        ({"groups": (), "pairs": FISHEYE.pairs}, "methods are missing"),
+        (
+            {"groups": (), "pairs": FISHEYE.pairs, "methods": ("abraham",), "rigs": ("t265",)},
+            "rigs stand beside pairs",
+        ),
         ({"groups": ()}, "scenes are missing"),
     ],
 )

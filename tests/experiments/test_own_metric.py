@@ -9,11 +9,11 @@ import pandas as pd
 import pytest
 
 import rectbench as rb
-from rectbench.experiments.execution.running import run
 from rectbench.experiments.planning import make_plan
 from rectbench.reporting import write_report
 from rectbench.runs.gating import accept, gate
-from rectbench.runs.record import read_results
+from rectbench.runs.making import run
+from rectbench.runs.run import read_run
 from rectbench.store.store import STORE_VARIABLE
 from tests.experiments.fakes import small_report
 
@@ -63,7 +63,7 @@ def folder(metric: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_its_number_and_its_remark_are_in_the_results(folder: Path) -> None:
-    row = read_results(folder).iloc[0]
+    row = read_run(folder).table.iloc[0]
     assert row["tallness_px"] > 10
     assert json.loads(row["notes"])["shape"].endswith("wide")
 

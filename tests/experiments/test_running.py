@@ -16,9 +16,9 @@ import pandas as pd
 import pytest
 
 import rectbench as rb
-from rectbench.experiments.execution.running import run
 from rectbench.metrics.catalogue import known
-from rectbench.runs.record import read_results
+from rectbench.runs.making import run
+from rectbench.runs.run import read_run
 from rectbench.store.store import STORE_VARIABLE, Store
 from tests.experiments.fakes import FIELDS, small_report, write_method, write_scene
 
@@ -149,7 +149,7 @@ def test_the_rows_do_not_depend_on_the_number_of_jobs(report_of_four: rb.Report,
 def test_a_run_folder_holds_the_rows_and_the_plan(report_of_four: rb.Report, tmp_path: Path) -> None:
     table = run(report_of_four, tmp_path / "run", jobs=2)
     pd.testing.assert_frame_equal(pd.read_parquet(tmp_path / "run" / "results.parquet"), table)
-    pd.testing.assert_frame_equal(read_results(tmp_path / "run"), table)
+    pd.testing.assert_frame_equal(read_run(tmp_path / "run").table, table)
     written = pd.read_csv(tmp_path / "run" / "results.csv")
     assert list(written.columns) == list(table.columns)
     identity = ["report", "scene", "rig", "motion", "pose", "method", "options", "seed"]
@@ -229,7 +229,7 @@ def test_a_run_cut_off_in_the_middle_loses_nothing_and_leaves_no_process(
     # At the top level of a script, without a guard: workers must not run it again.
     script = tmp_path / "script.py"
     script.write_text(
-        f"import rectbench as rb\nfrom rectbench.experiments.execution.running import run\n"
+        f"import rectbench as rb\nfrom rectbench.runs.making import run\n"
         f"run(rb.Report(**{fields!r}), {str(tmp_path / 'run')!r}, jobs=1)\n"
     )
     process = subprocess.Popen(

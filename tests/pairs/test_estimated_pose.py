@@ -11,9 +11,9 @@ import pytest
 import rectbench as rb
 from rectbench.experiments.execution.cells import problem_of
 from rectbench.experiments.execution.desk import DESK
-from rectbench.experiments.execution.running import run
 from rectbench.experiments.planning import make_plan
 from rectbench.pairs.opening import open_pair
+from rectbench.runs.making import run
 from rectbench.store.store import Store
 from tests.experiments.fakes import small_report, write_scene
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import zlib
 from dataclasses import dataclass
 from itertools import product
@@ -13,11 +12,14 @@ import numpy as np
 import pandas as pd
 
 from rectbench.cameras import Camera
+from rectbench.experiments.planning import Selection
+from rectbench.experiments.spec import Report
 from rectbench.images.stereo_pair import StereoPair
 from rectbench.metrics import distortion
 from rectbench.rendering.truth import Truth
 from rectbench.reporting import Sources
 from rectbench.rigs import Rig
+from rectbench.runs.record import VERSION, RunRecord, write_run
 from rectbench.types import Matches
 from rectbench.warps import Cubic, Epipolar, Perspective, Radial, Rectification
 
@@ -103,29 +105,55 @@ def quick_rows(
     return [make_row(s, r, p, m) for s, r, p, m in product(scenes, rigs, poses, methods)]
 
 
-def save_run(folder: Path, rows: list[dict[str, Any]], **facts: Any) -> Path:
-    """Rows as a run's folder."""
-    folder.mkdir(exist_ok=True)
-    frame = pd.DataFrame(rows)
-    frame.to_parquet(folder / "results.parquet")
-    frame.to_csv(folder / "results.csv", index=False)
-    (folder / "run.json").write_text(json.dumps(FACTS | facts))
+def save_run(
+    folder: Path, rows: list[dict[str, Any]], spec: dict[str, Any] | None = None, figures: Any = None
+) -> Path:
+    """Rows as a run's folder, with a record of a report that has them and what of `spec` is given."""
+    record = RunRecord(**FACTS, report=rows[0]["report"], spec=_report(rows, spec or {}, figures))
+    write_run(folder, pd.DataFrame(rows), record)
     return folder
 
 
-FACTS = {
-    "report": "quick",
-    "title": "Five rectifiers on four scenes and three rigs",
-    "description": "Small images and the fast integrator: a first look, done in a minute and a half.",
+def _report(rows: list[dict[str, Any]], spec: dict[str, Any], figures: Any) -> Report:
+    def grid(rows: list[dict[str, Any]]) -> dict[str, Any]:
+        pairs = dict.fromkeys((row["scene"], row["rig"], row["motion"]) for row in rows)
+        return {
+            "pairs": tuple(pairs) or (("street", "t265", "as-calibrated"),),
+            "methods": tuple(dict.fromkeys([*(row["method"] for row in rows), *METHODS])),
+        }
+
+    head = {"name": rows[0]["report"], "title": TITLE, "description": DESCRIPTION, "figures": figures}
+    groups = spec.get("groups", ())
+    if not groups:
+        return Report(**head, **grid(rows), **spec)
+    groups = [{**group, **grid([r for r in rows if r["group"] == group["name"]])} for group in groups]
+    return Report(**{**head, **spec, "groups": groups})
+
+
+TITLE = "Five rectifiers on four scenes and three rigs"
+DESCRIPTION = "Small images and the fast integrator: a first look, done in a minute and a half."
+FACTS: dict[str, Any] = {
+    "version": VERSION,
+    "report_file": None,
     "command": "rectbench run quick --jobs 2",
-    "started_at": "2030-05-04T10:11:12Z",
     "wall_s": 71.25,
     "git_revision": "0123456789abcdef0123456789abcdef01234567",
     "cpu": "AMD EPYC 7B13",
     "cores": 2,
-    "llvm": "21.1.8",
-    "seeds": [0],
+    "llvm": {"version": "21.1.8"},
+    "python": "3.11.2",
+    "platform": "Linux",
+    "seeds": (0,),
+    "selection": Selection(),
+    "is_whole": True,
+    "jobs": 2,
+    "threads_per_job": 1,
+    "dask": None,
     "versions": {"rectbench": "0.1.0", "numpy": "2.4.6", "mitsuba": "3.9.1", "opencv": "5.0.0"},
+    "data": None,
+    "photographs": None,
+    "columns": {},
+    "cells": (),
 }
 
 

@@ -90,7 +90,7 @@ def paper_rows() -> list[dict[str, Any]]:
 @pytest.fixture(scope="module")
 def reported(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """One whole report of parts, looked at by many tests."""
-    folder = save_run(tmp_path_factory.mktemp("parts"), paper_rows(), spec=SPEC, report="paper")
+    folder = save_run(tmp_path_factory.mktemp("parts"), paper_rows(), spec=SPEC)
     write_report(folder, sources=fake_sources(96))
     return folder
 

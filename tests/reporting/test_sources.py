@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -9,7 +10,7 @@ import pytest
 
 from rectbench.errors import InvalidResult
 from rectbench.metrics import distortion
-from rectbench.reporting import recall, sources
+from rectbench.reporting import sources
 from rectbench.reporting.sources import sources_of
 from rectbench.runs.run import Run, read_run
 from tests.reporting.runs import fake_rectification, fake_rig, make_row
@@ -24,11 +25,11 @@ def run_of(write_run: Callable[..., Path], monkeypatch: pytest.MonkeyPatch) -> C
 
     def read(native: float) -> Run:
         row = make_row("street", "t265", "exact", "abraham", distortion_native=native)
-        identity = recall.identity_of(row)
-        monkeypatch.setattr(recall, "read_tasks", lambda folder: {identity: SimpleNamespace(pair="the pair")})
+        run = read_run(write_run([row]))
+        planned = SimpleNamespace(cell=run.results[0].cell, pair="the pair")
         monkeypatch.setattr(sources, "open_pair", lambda spec, store: SimpleNamespace(spec=spec))
-        monkeypatch.setattr(recall, "recalled_rectification", refit)
-        return read_run(write_run([row]))
+        monkeypatch.setattr(sources, "_fitted_again", refit)
+        return replace(run, record=run.record.model_copy(update={"cells": (planned,)}))
 
     fits: list[Any] = []
 

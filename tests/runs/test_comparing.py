@@ -8,9 +8,10 @@ import pytest
 
 import rectbench as rb
 from rectbench.experiments.execution.outcomes import Outcome
+from rectbench.experiments.execution.running import Execution
 from rectbench.experiments.planning import make_plan
 from rectbench.runs.comparing import compare
-from rectbench.runs.record import facts_of, table_of, write_run
+from rectbench.runs.record import RunRecord, table_of, write_run
 from tests.experiments.fakes import small_report
 
 SEEDS = tuple(range(12))
@@ -26,7 +27,7 @@ def write(folder: Path, shift: float, spread: float = 0.0, failed: tuple[int, ..
         else Outcome(metrics={"log_distortion": 1.0 + seed + shift + noise[seed]})
         for seed in SEEDS
     ]
-    write_run(folder, table_of(plan, outcomes), facts_of(plan))
+    write_run(folder, table_of(plan, outcomes), RunRecord.of(Execution(plan, outcomes, 1, 1, None), 1.0))
     return folder
 
 

@@ -11,9 +11,10 @@ import pytest
 
 import rectbench as rb
 from rectbench.experiments.execution.outcomes import Outcome
+from rectbench.experiments.execution.running import Execution
 from rectbench.experiments.planning import make_plan
 from rectbench.runs.gating import accept, accepted_path, gate
-from rectbench.runs.record import facts_of, table_of, write_run
+from rectbench.runs.record import RunRecord, table_of, write_run
 from tests.experiments.fakes import small_report, write_report_file
 
 METRICS = {"row_error_mean_px": 0.1, "log_distortion": 0.25, "coverage_pixels": 0.9, "fit_s": 0.01}
@@ -24,8 +25,9 @@ Change = Callable[[pd.DataFrame], pd.DataFrame]
 def write(folder: Path, change: Change = lambda table: table, is_whole: bool = True) -> Path:
     """A run of two methods on two seeds, changed."""
     plan = make_plan(small_report(methods=("abraham", "conventional"), seeds=(0, 1)))
-    table = table_of(plan, [Outcome(metrics=METRICS) for _ in plan.tasks])
-    write_run(folder, change(table), {**facts_of(plan), "is_whole": is_whole})
+    outcomes = [Outcome(metrics=METRICS) for _ in plan.tasks]
+    record = RunRecord.of(Execution(plan, outcomes, 1, 1, None), 1.0)
+    write_run(folder, change(table_of(plan, outcomes)), record.model_copy(update={"is_whole": is_whole}))
     return folder
 
 
@@ -44,9 +46,9 @@ def setting(column: str, value: object, row: int = 0) -> Change:
 
 
 def test_the_same_numbers_pass(tmp_path: Path, accepted: Path) -> None:
-    verdict = gate(write(tmp_path / "run"), accepted)
-    assert (verdict.exit_code, verdict.compared) == (0, 4)
-    assert verdict.regressions + verdict.improvements + verdict.new + verdict.incomplete == []
+    found = gate(write(tmp_path / "run"), accepted)
+    assert (found.exit_code, found.compared) == (0, 4)
+    assert found.regressions + found.improvements + found.new + found.incomplete == []
 
 
 @pytest.mark.parametrize(
@@ -69,10 +71,10 @@ def test_the_same_numbers_pass(tmp_path: Path, accepted: Path) -> None:
 def test_what_got_worse_fails_and_what_got_better_is_told(
     tmp_path: Path, accepted: Path, column: str, value: object, code: int, kind: str | None
 ) -> None:
-    verdict = gate(write(tmp_path / "run", setting(column, value)), accepted)
-    assert verdict.exit_code == code
+    found = gate(write(tmp_path / "run", setting(column, value)), accepted)
+    assert found.exit_code == code
     for name in ("regressions", "improvements"):
-        lines = getattr(verdict, name)
+        lines = getattr(found, name)
         assert len(lines) == (name == kind), lines
         assert all("abraham on street/t265/as-calibrated/exact/seed 0" in line for line in lines)
         assert all(column in line for line in lines)
@@ -82,11 +84,11 @@ def test_a_missing_cell_fails_a_whole_run_and_leaves_a_part_incomplete(
     tmp_path: Path, accepted: Path
 ) -> None:
     run = write(tmp_path / "run", lambda table: table.iloc[1:])
-    verdict = gate(run, accepted)
-    assert (verdict.exit_code, len(verdict.regressions)) == (1, 1)
+    found = gate(run, accepted)
+    assert (found.exit_code, len(found.regressions)) == (1, 1)
     part = write(tmp_path / "part", lambda table: table.iloc[1:], is_whole=False)
-    verdict = gate(part, accepted)
-    assert (verdict.exit_code, len(verdict.incomplete)) == (3, 1)
+    found = gate(part, accepted)
+    assert (found.exit_code, len(found.incomplete)) == (3, 1)
 
 
 def test_a_run_that_measured_nothing_does_not_pass(tmp_path: Path) -> None:
@@ -100,8 +102,8 @@ def test_a_run_that_measured_nothing_does_not_pass(tmp_path: Path) -> None:
     accept(write(tmp_path / "accepted", setting("status", "ok")), path)
     text = path.read_text().replace(",ok,", ",unsupported,")
     path.write_text(text)
-    verdict = gate(tmp_path / "run", path)
-    assert (verdict.exit_code, verdict.compared, verdict.regressions) == (3, 0, [])
+    found = gate(tmp_path / "run", path)
+    assert (found.exit_code, found.compared, found.regressions) == (3, 0, [])
 
 
 def test_cells_without_accepted_numbers_are_told_and_are_no_pass_alone(
@@ -109,8 +111,8 @@ def test_cells_without_accepted_numbers_are_told_and_are_no_pass_alone(
 ) -> None:
     lines = accepted.read_text().splitlines()
     accepted.write_text("\n".join(lines[:3]) + "\n")
-    verdict = gate(write(tmp_path / "run"), accepted)
-    assert (verdict.exit_code, verdict.compared, len(verdict.new)) == (0, 2, 2)
+    found = gate(write(tmp_path / "run"), accepted)
+    assert (found.exit_code, found.compared, len(found.new)) == (0, 2, 2)
     accepted.write_text(lines[0] + "\n")
     assert gate(write(tmp_path / "run"), accepted).exit_code == 3
 
@@ -118,8 +120,8 @@ def test_cells_without_accepted_numbers_are_told_and_are_no_pass_alone(
 def test_a_cell_that_failed_when_accepted_may_recover(tmp_path: Path) -> None:
     path = tmp_path / "small.accepted.csv"
     accept(write(tmp_path / "accepted", setting("status", "unsupported")), path)
-    verdict = gate(write(tmp_path / "run"), path)
-    assert (verdict.exit_code, len(verdict.improvements)) == (0, 1)
+    found = gate(write(tmp_path / "run"), path)
+    assert (found.exit_code, len(found.improvements)) == (0, 1)
     assert gate(write(tmp_path / "same", setting("status", "unsupported")), path).exit_code == 0
     assert gate(write(tmp_path / "worse", setting("status", "crash")), path).exit_code == 1
 

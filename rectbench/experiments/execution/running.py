@@ -3,33 +3,22 @@
 from __future__ import annotations
 
 import os
-import time
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
-from typing import Any
-
-import pandas as pd
 
 from rectbench.errors import InvalidInput
 from rectbench.experiments.execution.cells import CELLS, cell_inputs, keep, run_cell, run_pair, stored_outcome
 from rectbench.experiments.execution.outcomes import Outcome
 from rectbench.experiments.execution.pool import Job, Workers
 from rectbench.experiments.execution.worker import Limits
-from rectbench.experiments.planning import Plan, Selection, find_report, make_plan
-from rectbench.experiments.spec import Report
+from rectbench.experiments.planning import Plan
 from rectbench.experiments.tasks import CellTask
 from rectbench.pairs.opening import open_pair
 from rectbench.pairs.pair import Pair
 from rectbench.pairs.spec import RenderedSpec
-from rectbench.progress import Progress, progress_for
-from rectbench.registry import is_path
-from rectbench.runs.record import check_writable, facts_of, table_of, write_run
+from rectbench.progress import Progress
 from rectbench.store.keys import digest
 from rectbench.store.store import Store
-
-RUNS = Path("runs")
-"""Where run folders go unless the user says otherwise."""
 
 
 @dataclass(frozen=True)
@@ -43,71 +32,45 @@ class Interrupted(Exception):
         return f"interrupted; {self.finished} of {self.cells} cells are kept, the same command goes on there"
 
 
-def run(
-    report: Report | str | Path,
-    out: str | Path | None = None,
+@dataclass(frozen=True)
+class Execution:
+    """How the tasks of a plan ended, and who worked on them."""
+
+    plan: Plan
+    outcomes: Sequence[Outcome]
+    """In the plan's order."""
+    jobs: int
+    threads_per_job: int
+    dask: str | None
+
+
+def execute(
+    plan: Plan,
     *,
-    methods: Sequence[str] | None = None,
-    scenes: Sequence[str] | None = None,
-    rigs: Sequence[str] | None = None,
-    seeds: Sequence[int] | None = None,
-    data: str | Path | None = None,
-    options: Mapping[str, Mapping[str, Any]] | None = None,
     jobs: int | None = None,
     dask: str | None = None,
     fresh: bool = False,
-    progress: bool | None = None,
-) -> pd.DataFrame:
-    """Run a report and write its run.json, results.parquet and results.csv.
+    progress: Progress | None = None,
+) -> Execution:
+    """Run the cells of a plan that the store does not have; raises Interrupted on Ctrl-C.
 
     Parameters
     ----------
-    report : a report's name, path, or the report itself.
-    out : the run's folder; `runs/<report>` by default.
-    methods, scenes, rigs, seeds : what to run in the place of the report's own; names or paths. A "+"
-        before a name adds it to the report's own.
-    data : the folder of photographs, for a report that takes them.
-    options : options by method and name, laid over the report's.
-    jobs : worker processes; as many as there are cores by default. The rows do not depend on it.
+    jobs : worker processes; as many as there are cores by default. The outcomes do not hang on it.
     dask : address of a dask.distributed scheduler that runs the cells in the place of local workers.
-    fresh : make again what the store has of this run.
-    progress : bars on stderr; on a terminal alone by default.
-
-    Returns one row a cell, in the report's order. Raises InvalidInput before anything runs where the
-    report, a name, a file or an option cannot be used; Interrupted on Ctrl-C.
+    fresh : make again what the store has of this plan.
+    progress : where to tell how far it is; nowhere by default.
     """
-    begin = time.monotonic()
-    selection = Selection(methods, scenes, rigs, seeds, options or {})
-    plan = make_plan(find_report(report), selection, data)
-    count, folder = _checked_jobs(jobs), run_folder(plan.report, out)
-    check_writable(folder)
+    count = checked_jobs(jobs)
     threads = max(1, (os.cpu_count() or 1) // count)
-    runner = _Runner(plan, Store.default(), count, threads, progress_for(progress))
+    runner = _Runner(plan, Store.default(), count, threads, progress or Progress())
     if fresh:
         runner.forget()
-    table = table_of(plan, runner.outcomes(dask))
-    facts = {
-        **facts_of(plan),
-        "report_file": _file_of(report),
-        "wall_s": round(time.monotonic() - begin, 2),
-        "jobs": count,
-        "threads_per_job": threads,
-        "dask": dask,
-    }
-    write_run(folder, table, facts)
-    return table
+    return Execution(plan, runner.outcomes(dask), count, threads, dask)
 
 
-def _file_of(report: Report | str | Path) -> str | None:
-    return None if isinstance(report, Report) or not is_path(report) else str(Path(report).resolve())
-
-
-def run_folder(report: Report | str | Path, out: str | Path | None = None) -> Path:
-    """Where a run of the report goes."""
-    return Path(out) if out is not None else RUNS / find_report(report).name
-
-
-def _checked_jobs(jobs: int | None) -> int:
+def checked_jobs(jobs: int | None) -> int:
+    """The worker processes wanted; raises InvalidInput for a number that is none."""
     if jobs is None:
         return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     if isinstance(jobs, bool) or not isinstance(jobs, int) or jobs < 1:

@@ -11,7 +11,8 @@ import numpy as np
 from rectbench.reporting.style import COLUMN_INCHES, INK, PAGE_INCHES, looks, plain_log_ticks
 from rectbench.reporting.tables.labels import pair_labels
 from rectbench.reporting.tables.numbers import decade
-from rectbench.runs.run import Result, Run
+from rectbench.runs.rows import Row
+from rectbench.runs.run import Run
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -43,9 +44,9 @@ class Starts:
 
 
 def start_study(part: Run, run: Run) -> tuple[Starts, ...]:
-    """The random starts of a part by pair, beside the same pair's default start anywhere in the run."""
+    """The starts of a part by pair: its rows with options, beside that without any, of the whole run."""
     defaults = {_cell(r): r for r in run.results if r.metrics.get(ENERGY) and not r.options}
-    studied = [r for r in part.results if r.is_random_start and _cell(r) in defaults]
+    studied = [r for r in part.results if r.options and _cell(r) in defaults]
     return tuple(
         _starts(label, [r for r in studied if r.place == place], defaults)
         for place, label in pair_labels(part).items()
@@ -55,14 +56,14 @@ def start_study(part: Run, run: Run) -> tuple[Starts, ...]:
 
 def study_method(part: Run) -> str:
     """The method under study."""
-    return next(str(r.row["method"]) for r in part.results if r.is_random_start)
+    return next(r.cell.method for r in part.results if r.options)
 
 
-def _cell(result: Result) -> tuple[object, ...]:
-    return *result.pair, result.pose, result.row["method"]
+def _cell(result: Row) -> tuple[object, ...]:
+    return *result.pair, result.pose, result.cell.method
 
 
-def _starts(label: str, results: list[Result], defaults: Mapping[tuple[object, ...], Result]) -> Starts:
+def _starts(label: str, results: list[Row], defaults: Mapping[tuple[object, ...], Row]) -> Starts:
     measured = [r for r in results if r.ok and ENERGY in r.metrics]
     ratios = sorted(r.metrics[ENERGY] / defaults[_cell(r)].metrics[ENERGY] for r in measured)
     return Starts(label, tuple(ratios), len(results) - len(ratios))

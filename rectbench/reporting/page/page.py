@@ -8,15 +8,7 @@ from dataclasses import dataclass
 
 from rectbench.plugins.metric import Column
 from rectbench.reporting.figures import EXTENSIONS, Drawn
-from rectbench.reporting.page.run_facts import (
-    Fact,
-    description,
-    full_json,
-    part_title,
-    reproduce_command,
-    run_facts,
-    title,
-)
+from rectbench.reporting.page.run_facts import Fact, part_title, run_facts
 from rectbench.reporting.style import looks
 from rectbench.reporting.tables.table import SPELLINGS, Entry, Table
 from rectbench.reporting.tables.tabulation import methods_part, slug
@@ -102,13 +94,13 @@ def render_page(run: Run, tables: Sequence[Table], drawn: Sequence[Drawn]) -> st
     environment.globals["sort_value"] = _sort_value
     of_kind = {table.kind: table for table in tables}
     page = Page(
-        title=title(run),
-        description=description(run),
-        report=run.report,
+        title=run.record.spec.title,
+        description=run.record.spec.description,
+        report=run.record.report,
         cells=len(run.results),
         failed=len(run.failures),
         scenes=run.scenes,
-        scenes_called="pairs" if run.is_of_photographs else "scenes",
+        scenes_called=f"{run.pair_source.scene_word}s",
         rigs=run.rigs,
         methods=_methods(run),
         poses=run.poses,
@@ -120,8 +112,8 @@ def render_page(run: Run, tables: Sequence[Table], drawn: Sequence[Drawn]) -> st
         colours={method: colour for method, (colour, _) in looks(run.methods).items()},
         glossary=[run.catalogue.column(key) for key in run.metrics],
         facts=run_facts(run),
-        full_json=full_json(run),
-        reproduce=reproduce_command(run),
+        full_json=run.record.to_json("cells"),
+        reproduce=run.record.command,
     )
     return environment.get_template("index.html.j2").render(page=page)
 

@@ -7,22 +7,20 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from rectbench.plugins.metric import Column
-from rectbench.reporting.page.run_facts import stated_claims
 from rectbench.reporting.tables.table import Entry, Heading, Section, Table, number, whole, words
 from rectbench.reporting.tables.tabulation import counted
 from rectbench.runs.run import Run
 
 if TYPE_CHECKING:
-    from rectbench.experiments.claims import Judged, Measured
+    from rectbench.runs.judging import Judged, Measured
 
 
 def claims_tables(run: Run) -> Iterator[Table]:
     """What is claimed and the verdict; then every measurement behind it."""
-    from rectbench.experiments.claims import judged_claims
+    from rectbench.runs.judging import judged_claims
 
-    stated = stated_claims(run)
-    if stated:
-        judged = judged_claims(stated, [r.row for r in run.results])
+    if claims := run.record.spec.claims:
+        judged = judged_claims(claims, run.results, run.table.columns)
         yield verdicts_table(judged)
         yield measurements_table(judged)
 

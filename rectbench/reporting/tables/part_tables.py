@@ -31,7 +31,8 @@ from rectbench.reporting.tables.tabulation import (
     titled,
     topic_columns,
 )
-from rectbench.runs.run import Result, Run
+from rectbench.runs.rows import Row
+from rectbench.runs.run import Run
 from rectbench.types import FloatArray
 
 _EXCESSES = {"least": 0.0, "median": 0.5, "largest": 1.0}
@@ -70,7 +71,7 @@ def _topic_tables(part: Run, topic: str) -> Iterator[Table]:
         yield from [timing_table(part)] if "timing" in wanted_kinds(part) and columns else []
     elif any(column.shown == "topic" for column in columns) and (
         # In a run without parts the main table speaks of it, if of few of its columns.
-        part.group or part.is_of_photographs or all(column.shown == "topic" for column in columns)
+        part.group or not part.has_truth or all(column.shown == "topic" for column in columns)
     ):
         yield from pairwise_tables(part, topic)
 
@@ -128,18 +129,18 @@ def pairwise_tables(run: Run, topic: str) -> Iterator[Table]:
     }
     about = run.only(r for r in run.results if r.method not in unmeasured)
     columns = [*measured(about, map(run.catalogue.column, wording.beside)), *topic_columns(about, topic)]
-    for pose in run.poses if run.is_of_photographs else run.noisy_poses[:1]:
-        caption = (run.is_of_photographs and wording.of_photographs) or wording.caption
+    for pose in run.noisy_poses[:1] if run.has_truth else run.poses:
+        caption = wording.caption if run.has_truth else wording.of_photographs or wording.caption
         yield replace(
             methods_table(about, columns, _by_pair(about, pose)),
             kind=wording.kind,
-            name=named(run, wording.stem, pose if run.is_of_photographs else ""),
-            title=titled(run, wording.title + (f" under the {pose} pose" if run.is_of_photographs else "")),
+            name=named(run, wording.stem, "" if run.has_truth else pose),
+            title=titled(run, wording.title + ("" if run.has_truth else f" under the {pose} pose")),
             caption=caption.format(pose=pose),
         )
 
 
-def _by_pair(run: Run, pose: str) -> dict[str, tuple[Result, ...]]:
+def _by_pair(run: Run, pose: str) -> dict[str, tuple[Row, ...]]:
     results, labels = run.select(pose=pose), pair_labels(run)
     by_pair = {one_line(label): run.select(results, place=place) for place, label in labels.items()}
     return {"all pairs": results, **by_pair} if len(labels) > 1 else by_pair
@@ -160,7 +161,7 @@ def pose_table(run: Run) -> Table:
         part=run.group,
         name=named(run, "pose"),
         title=titled(run, "Poses estimated from the images"),
-        caption=("Against the calibration" if run.is_of_photographs else "Against the true pose")
+        caption=("Against the true pose" if run.has_truth else "Against the calibration")
         + "; averages over seeds, and the median over all. σ is what the estimate believes.",
         headings=(
             Heading("pair", "pair", numeric=False),
@@ -171,7 +172,7 @@ def pose_table(run: Run) -> Table:
     )
 
 
-def _poses(results: Sequence[Result], keys: Sequence[str]) -> list[list[float]]:
+def _poses(results: Sequence[Row], keys: Sequence[str]) -> list[list[float]]:
     """The columns of each estimate, once."""
     estimates = {(r.pair, r.pose): r for r in results if r.ok and keys[0] in r.metrics}
     return [[r.metrics.get(key, math.nan) for key in keys] for r in estimates.values()]
@@ -213,7 +214,7 @@ def timing_table(run: Run) -> Table:
     )
 
 
-def _timing_row(results: Sequence[Result], method: str, stages: Iterable[str]) -> tuple[Entry, ...]:
+def _timing_row(results: Sequence[Row], method: str, stages: Iterable[str]) -> tuple[Entry, ...]:
     found = [[r.metrics[key] for r in results if key in r.metrics] for key in stages]
     return words(method), *(_seconds(sum(values) / len(values) if values else None) for values in found)
 

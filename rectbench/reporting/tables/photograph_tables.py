@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from typing import Any
+from collections.abc import Iterator
 
 from rectbench.reporting.tables.labels import one_line, pair_labels
 from rectbench.reporting.tables.numbers import MISSING
 from rectbench.reporting.tables.table import Heading, Section, Table, number, words
 from rectbench.reporting.tables.tabulation import heading, measured
+from rectbench.runs.record import FoundPhotographs
 from rectbench.runs.run import Run
 
 COUNTED = ("pose_inliers", "row_error_features_matches", "row_error_board_points")
@@ -19,17 +19,16 @@ TROUBLE = ("contradiction", "no_features")
 
 def photograph_tables(run: Run) -> Iterator[Table]:
     """The pairs with their files, then the files of the folder that no pair has; none for rendered pairs."""
-    found = run.facts.get("photographs")
-    if not isinstance(found, Mapping):
+    found = run.record.photographs
+    if found is None:
         return
     yield _pairs_table(run, found)
-    if found.get("left_out"):
+    if found.left_out:
         yield _left_out_table(found)
 
 
-def _pairs_table(run: Run, found: Mapping[str, Any]) -> Table:
-    files = {(pair["name"], pair["rig"]): pair for pair in found["pairs"]}
-    remarks = found.get("remarks", {})
+def _pairs_table(run: Run, found: FoundPhotographs) -> Table:
+    files = {(pair.name, pair.rig): pair for pair in found.pairs}
     columns = measured(run, map(run.catalogue.column, COUNTED))
     rows = []
     for place, label in pair_labels(run).items():
@@ -41,12 +40,12 @@ def _pairs_table(run: Run, found: Mapping[str, Any]) -> Table:
             for column in columns
         ]
         pair = files[place[0], place[1]]
-        said = [*(told[name] for name in TROUBLE if name in told), *remarks.get(place[1], [])]
+        said = [*(told[name] for name in TROUBLE if name in told), *found.remarks.get(place[1], ())]
         rows.append(
             (
                 words(one_line(label)),
-                words(pair["left"]),
-                words(pair["right"]),
+                words(pair.left),
+                words(pair.right),
                 *map(number, counts, columns),
                 words(told.get("board", MISSING)),
                 words("; ".join(said)),
@@ -70,8 +69,8 @@ def _pairs_table(run: Run, found: Mapping[str, Any]) -> Table:
     )
 
 
-def _left_out_table(found: Mapping[str, Any]) -> Table:
-    rows = tuple((words(out["path"]), words(out["reason"])) for out in found["left_out"])
+def _left_out_table(found: FoundPhotographs) -> Table:
+    rows = tuple((words(out.path), words(out.reason)) for out in found.left_out)
     return Table(
         kind="left-out",
         name="left-out",

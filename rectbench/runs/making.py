@@ -1,0 +1,70 @@
+"""From a report to a run's folder."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from rectbench.experiments.execution.running import checked_jobs, execute
+from rectbench.experiments.planning import Selection, find_report, make_plan
+from rectbench.experiments.spec import Report
+from rectbench.progress import progress_for
+from rectbench.registry import is_path
+from rectbench.runs.record import RunRecord, check_writable, table_of, write_run
+
+RUNS = Path("runs")
+"""Where run folders go unless the user says otherwise."""
+
+
+def run(
+    report: Report | str | Path,
+    out: str | Path | None = None,
+    *,
+    methods: Sequence[str] | None = None,
+    scenes: Sequence[str] | None = None,
+    rigs: Sequence[str] | None = None,
+    seeds: Sequence[int] | None = None,
+    data: str | Path | None = None,
+    options: Mapping[str, Mapping[str, Any]] | None = None,
+    jobs: int | None = None,
+    dask: str | None = None,
+    fresh: bool = False,
+    progress: bool | None = None,
+) -> pd.DataFrame:
+    """Run a report and write its run.json, results.parquet and results.csv.
+
+    Parameters
+    ----------
+    report : a report's name, path, or the report itself.
+    out : the run's folder; `runs/<report>` by default.
+    methods, scenes, rigs, seeds : what to run in the place of the report's own; names or paths. A "+"
+        before a name adds it to the report's own.
+    data : the folder of photographs, for a report that takes them.
+    options : options by method and name, laid over the report's.
+    jobs, dask, fresh : see `execute`.
+    progress : bars on stderr; on a terminal alone by default.
+
+    Returns one row a cell, in the report's order. Raises InvalidInput before anything runs where the
+    report, a name, a file or an option cannot be used; Interrupted on Ctrl-C.
+    """
+    begin = time.monotonic()
+    plan = make_plan(find_report(report), Selection(methods, scenes, rigs, seeds, options or {}), data)
+    count, folder = checked_jobs(jobs), run_folder(plan.report, out)
+    check_writable(folder)
+    execution = execute(plan, jobs=count, dask=dask, fresh=fresh, progress=progress_for(progress))
+    table = table_of(plan, execution.outcomes)
+    write_run(folder, table, RunRecord.of(execution, time.monotonic() - begin, _file_of(report)))
+    return table
+
+
+def run_folder(report: Report | str | Path, out: str | Path | None = None) -> Path:
+    """Where a run of the report goes."""
+    return Path(out) if out is not None else RUNS / find_report(report).name
+
+
+def _file_of(report: Report | str | Path) -> str | None:
+    return None if isinstance(report, Report) or not is_path(report) else str(Path(report).resolve())
