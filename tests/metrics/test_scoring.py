@@ -12,7 +12,7 @@ import pytest
 import rectbench as rb
 from rectbench.experiments.execution import cells
 from rectbench.metrics.catalogue import known
-from rectbench.metrics.scoring import BUNDLES, metrics_of, needs_of, score
+from rectbench.metrics.scoring import BUNDLES, digests_of, metrics_of, needs_of, score
 from rectbench.plugins.metric import METRICS
 from rectbench.registry import registry
 from rectbench.store.closure import PACKAGE, source_closure
@@ -122,3 +122,11 @@ def test_every_built_in_metric_shapes_the_key_of_a_cell() -> None:
     paths = {plugin.path for plugin in registry(METRICS).plugins() if PACKAGE in plugin.path.parents}
     assert len(paths) >= 12
     assert paths <= set(closure)
+
+
+def test_an_edited_metric_of_one_s_own_changes_the_key(tmp_path: Path) -> None:
+    path = own_metric(tmp_path, "{}")
+    before = digests_of([path])
+    own_metric(tmp_path, "{'own': 1.0}")
+    assert digests_of([path]).keys() == before.keys() == {"own"}
+    assert digests_of([path]) != before
