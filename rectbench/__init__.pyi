@@ -39,6 +39,10 @@ from .plugins.figure import Figure as Figure
 from .plugins.figure import FigureData as FigureData
 from .plugins.homography import HomographyRectifier as HomographyRectifier
 from .plugins.homography import PinholeView as PinholeView
+from .plugins.metric import Case as Case
+from .plugins.metric import Column as Column
+from .plugins.metric import Metric as Metric
+from .plugins.metric import Tolerance as Tolerance
 from .plugins.rectifier import Options as Options
 from .plugins.rectifier import Problem as Problem
 from .plugins.rectifier import Rectifier as Rectifier

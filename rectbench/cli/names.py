@@ -8,7 +8,7 @@ import typer
 
 from rectbench.errors import UnknownName
 
-KINDS = ("methods", "scenes", "rigs", "motions", "poses", "reports", "figures", "formats")
+KINDS = ("methods", "scenes", "rigs", "motions", "poses", "metrics", "reports", "figures", "formats")
 
 
 def list_(

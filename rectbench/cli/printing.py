@@ -26,16 +26,6 @@ if TYPE_CHECKING:
 WIDE = 160
 """Columns assumed where the output is no terminal, so that a pipe gets whole lines."""
 
-_PAGE_ONLY = (
-    "distortion_rescaled",
-    "row_error_p95_px",
-    "row_error_source_mean_px",
-    "coverage_pixels",
-    "sampling_lost",
-    "maps_s",
-)
-"""Columns of the main table that would make it too wide for a terminal; the page has them."""
-
 SHOWN_DIFFERENCES = 40
 
 
@@ -48,7 +38,9 @@ def console() -> Console:
 def show_names(kind: str, verbose: bool) -> None:
     """The names of a kind with a line about each; below, the plugins that cannot be loaded."""
     from rectbench.experiments.spec import REPORTS
+    from rectbench.metrics.scoring import BUNDLES
     from rectbench.plugins.figure import FIGURES
+    from rectbench.plugins.metric import METRICS
     from rectbench.plugins.rectifier import METHODS
     from rectbench.plugins.scene import SCENES
     from rectbench.registry import Kind, registry
@@ -56,7 +48,7 @@ def show_names(kind: str, verbose: bool) -> None:
 
     screen, table = console(), _table(kind)
     broken: dict[str, str] = {}
-    known_kinds = (METHODS, SCENES, REPORTS, FIGURES, FORMATS)
+    known_kinds = (METHODS, SCENES, METRICS, REPORTS, FIGURES, FORMATS)
     kinds: dict[str, Kind[Any]] = {known.name: known for known in known_kinds}
     if kind in kinds:
         found = registry(kinds[kind])
@@ -65,6 +57,8 @@ def show_names(kind: str, verbose: bool) -> None:
             table.add_row(plugin.name, plugin.summary)
             if verbose and kind == "methods":
                 _add_options(table, plugin.value)
+        for bundle, members in BUNDLES.items() if kind == "metrics" else ():
+            table.add_row(bundle, f"Together: {', '.join(members)}.")
     else:
         for name, summary in _described(kind):
             table.add_row(name, summary)
@@ -127,10 +121,11 @@ def show_summary(folder: Path) -> None:
     from rectbench.runs.run import read_run
 
     screen, found = console(), read_run(folder)
+    page_only = {column.key for column in found.catalogue.shown("page")}  # they make it too wide
     for summary in main_tables(found):
         caption = " ".join([summary.caption, *summary.notes])
         table = Table(title=summary.title, caption=caption, box=SIMPLE_HEAD, pad_edge=False)
-        shown = [i for i, heading in enumerate(summary.headings) if heading.key not in _PAGE_ONLY]
+        shown = [i for i, heading in enumerate(summary.headings) if heading.key not in page_only]
         for i in shown:
             heading = summary.headings[i]
             # On a narrow screen the headings are folded, never the numbers.

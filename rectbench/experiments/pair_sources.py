@@ -56,9 +56,9 @@ class StatedPart:
     """None draws the usual ones."""
     rendering: Rendering
     needs_images: bool
-    """Whether a metric, pose or figure asks for images; methods may ask for them, too."""
-    needs_truth: bool
-    """Whether a metric asks for the truth."""
+    """Whether a pose or figure asks for images; metrics and methods may ask for them, too."""
+    needs_truth: bool = False
+    """Whether a metric or method asks for the truth."""
     is_open: bool = True
     """Whether methods added to a run join this part."""
     alone: bool = False

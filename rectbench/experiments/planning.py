@@ -14,6 +14,7 @@ from rectbench.experiments.naming import plugins_named, require_known
 from rectbench.experiments.pair_sources import PairName, PairSource, StatedPart
 from rectbench.experiments.spec import REPORTS, Report
 from rectbench.experiments.tasks import Cell, CellTask
+from rectbench.metrics.scoring import metrics_of, needs_of
 from rectbench.pairs.finding.photographs import Photographs
 from rectbench.pairs.spec import ESTIMATED, PairSpec
 from rectbench.plugins.figure import FIGURES, usual_figures
@@ -130,12 +131,17 @@ def _tasks_of(
     methods = plugins_named(METHODS, names)
     option_sets = _option_sets(part.options, chosen, [plugin for plugin, _ in methods])
     needs = frozenset().union(*(plugin.value.needs for plugin, _ in methods))
+    metrics = metrics_of(part.metrics)
+    measuring = needs_of(part.metrics)
+    for metric in metrics.values():
+        if "truth" in metric.value.needs and not source.has_truth:
+            raise InvalidInput(f"metric {metric.name} needs the truth, which photographs have not")
     chosen_part = replace(
         part,
         pairs=_chosen_pairs(part, source, own, chosen),
         seeds=_chosen_seeds(part, own, chosen),
-        needs_images=part.needs_images or "images" in needs | _figure_needs(part),
-        needs_truth=part.needs_truth or "matches" in needs,
+        needs_images=part.needs_images or "images" in needs | measuring | _figure_needs(part),
+        needs_truth="matches" in needs or "truth" in measuring,
     )
     for pair in source.specs(chosen_part):
         for pose, (method, method_source) in itertools.product(report.poses, methods):
@@ -155,7 +161,7 @@ def _tasks_of(
                     pair=pair,
                     method_source=method_source,
                     options=options,
-                    metrics=part.metrics,
+                    metrics=tuple(metrics),
                     match_count=report.match_count,
                     match_noise_px=report.match_noise_px,
                     group=part.name,

@@ -24,19 +24,6 @@ from rectbench.pairs.spec import CALIBRATED, ESTIMATED
 from rectbench.registry import is_path
 from rectbench.registry.kind import Described, Kind
 
-Metric = Literal[
-    "distortion",
-    "geometry",
-    "row_error",
-    "row_error_features",
-    "row_error_board",
-    "reconstruction",
-    "energy",
-    "timing",
-]
-"""Distortion at the grid alone; all of distortion, coverage and order; row error of the truth, of SIFT
-matches in the images, and of a calibration board's corners where they show one; depth from dense matching;
-the shape of the energy; times."""
 Names = Annotated[tuple[str, ...], Field(min_length=1)]
 Slug = Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9-]*$")]
 
@@ -57,9 +44,6 @@ def _one_set_is_a_list_of_one(options: Any) -> Any:
 
 OptionSets = Annotated[Mapping[str, tuple[dict[str, Any], ...]], BeforeValidator(_one_set_is_a_list_of_one)]
 
-IMAGE_METRICS = frozenset({"row_error_features", "row_error_board", "reconstruction"})
-TRUTH_METRICS = frozenset({"row_error", "reconstruction"})
-
 
 class Group(BaseModel):
     """A part of a report with pairs and methods of its own, shown apart from the other parts.
@@ -75,7 +59,7 @@ class Group(BaseModel):
     pairs: tuple[PairName, ...] = Field(description="The pairs: (scene, rig, motion) each, by name or path.")
     methods: Names = Field(description="Rectifiers, by name or path.")
     options: OptionSets = Field(default_factory=dict, description="As a report's.")
-    metrics: tuple[Metric, ...] | None = Field(default=None, description="In the place of the report's.")
+    metrics: tuple[str, ...] | None = Field(default=None, description="In the place of the report's.")
     figures: tuple[FigureName, ...] | None = Field(default=None, description="In the place of the report's.")
     seeds: Annotated[tuple[int, ...], Field(min_length=1)] | None = Field(
         default=None, description="In the place of the report's."
@@ -155,9 +139,10 @@ class Report(Rendering, GivenMatches, CellLimits):
         "the images. Of photographs: calibrated, or estimated.",
     )
     seeds: Annotated[tuple[int, ...], Field(min_length=1)] = Field(default=(0,), description="Repetitions.")
-    metrics: tuple[Metric, ...] = Field(
+    metrics: tuple[str, ...] = Field(
         default=("geometry", "row_error", "timing"),
-        description="What is measured. Nothing is rendered or computed that none of these asks for.",
+        description="What is measured: metrics, by name or path. `geometry` is all that needs neither image "
+        "nor match. Nothing is rendered or computed that none of these asks for.",
     )
     figures: tuple[FigureName, ...] | None = Field(
         default=None, description="Figures to draw; None draws the usual ones."
@@ -199,8 +184,7 @@ class Report(Rendering, GivenMatches, CellLimits):
             metrics=metrics,
             figures=figures,
             rendering=Rendering(image_width=width, quality=self.quality, spp=self.spp),
-            needs_images=ESTIMATED in self.poses or not IMAGE_METRICS.isdisjoint(metrics),
-            needs_truth=not TRUTH_METRICS.isdisjoint(metrics),
+            needs_images=ESTIMATED in self.poses,
             is_open=group.is_open,
             alone=group.alone,
         )
@@ -220,12 +204,10 @@ class Report(Rendering, GivenMatches, CellLimits):
         return self
 
     @model_validator(mode="after")
-    def _asks_for_no_truth_that_nobody_knows(self) -> Report:
-        if not self._kind_of_source.has_truth:
-            if asked := sorted(TRUTH_METRICS.intersection(self.metrics)):
-                raise ValueError(f"metric {asked[0]} needs the truth, which photographs have not")
-            if foreign := [pose for pose in self.poses if pose not in (CALIBRATED, ESTIMATED)]:
-                raise ValueError(f"pose of photographs is {foreign[0]}; expected {CALIBRATED} or {ESTIMATED}")
+    def _has_poses_that_can_be(self) -> Report:
+        foreign = [pose for pose in self.poses if pose not in (CALIBRATED, ESTIMATED)]
+        if foreign and not self._kind_of_source.has_truth:
+            raise ValueError(f"pose of photographs is {foreign[0]}; expected {CALIBRATED} or {ESTIMATED}")
         return self
 
     @model_validator(mode="after")

@@ -9,6 +9,7 @@ import numpy as np
 from rectbench.cameras import Camera
 from rectbench.cameras.projection import projected_partials
 from rectbench.formulas.evaluation import evaluate_points
+from rectbench.plugins.metric import Case, Column, Metric, Tolerance
 from rectbench.rigs import Rig
 from rectbench.types import FloatArray
 from rectbench.warps import Rectification, Warp
@@ -31,6 +32,12 @@ def coverage(rect: Rectification, rig: Rig) -> dict[str, float]:
 
     Each is the mean of both images. The overlap is what the other camera sees too, of points at
     infinity.
+
+    >>> import rectbench as rb
+    >>> rig = rb.load_rig("t265")
+    >>> kept = coverage(rb.rectify(rig, method="abraham"), rig)
+    >>> 0 < kept["coverage_overlap"] <= 1
+    True
     """
     sides = (
         (rect.left, rig.right, rig.R_right_left),
@@ -73,3 +80,56 @@ def solid_angle(du: Any, dv: Any, xp: Any) -> Any:
     """Solid angle of a pixel, steradians, from the projection's gradients du/d(ray) and dv/d(ray)."""
     uu, uv, vv = (sum(p * q for p, q in zip(a, b, strict=True)) for a, b in ((du, du), (du, dv), (dv, dv)))
     return 1.0 / xp.sqrt(uu * vv - uv * uv)
+
+
+class Coverage(Metric):
+    """How much of the source is kept, and how much of the output shows anything."""
+
+    name, topic = "coverage", "Coverage"
+    columns = (
+        Column.share(
+            "coverage_pixels",
+            "pixels kept",
+            "higher",
+            "Share of source pixels that reach the output.",
+            tolerance=Tolerance(0.0, 0.002),
+            shown="page",
+            promised=True,
+        ),
+        Column.share(
+            "coverage_solid_angle",
+            "field of view kept",
+            "higher",
+            "Share of the lens's solid angle that is kept.",
+            tolerance=Tolerance(0.0, 0.002),
+            shown="summary",
+            promised=True,
+        ),
+        Column.share(
+            "coverage_overlap",
+            "overlap kept",
+            "higher",
+            "Share of the view common to both cameras that is kept.",
+            shown="pairs",
+        ),
+        Column.share(
+            "valid_output",
+            "output used",
+            "higher",
+            "Share of the output that shows anything.",
+            shown="pairs",
+            promised=True,
+        ),
+        Column(
+            "output_pixels_per_source_pixel",
+            "output / source",
+            "px/px",
+            None,
+            "Pixels of output spent on one pixel of source.",
+            shown="pairs",
+        ),
+    )
+
+    def compute(self, case: Case) -> dict[str, float]:
+        """Means of both images."""
+        return coverage(case.rect, case.rig)

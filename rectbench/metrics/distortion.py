@@ -1,24 +1,25 @@
-"""Resampling distortion: the paper's L under three protocols, and the scale-free one.
+"""Resampling distortion: the paper's L under three protocols.
 
-Zhou, Dai and Li, section III-D. L is 1 for an image shrunk to nothing, and its scale-free
-companion has no such optimum; so the protocols stand side by side.
+Zhou, Dai and Li, section III-D. L is 1 for an image shrunk to nothing, and log distortion, its
+scale-free companion, has no such optimum; so the protocols stand side by side.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import least_squares
 
 from rectbench.errors import InvalidInput
+from rectbench.plugins.metric import Case, Column, Metric, Tolerance
 from rectbench.rigs import Rig
 from rectbench.types import FloatArray
 from rectbench.warps import Rectification
-from rectbench.warps.jacobians import Jacobians, entries, finite, losses, singular_values
+from rectbench.warps.jacobians import Jacobians, entries, finite, losses
 
 Protocol = Literal["native", "rescaled", "stretched"]
 WEIGHTS = np.sqrt([1.0, 0.5, 0.5])
@@ -73,6 +74,12 @@ def distortion(
     pixels : [N, 2] source pixels, used for both images; None means each image's ~500.
     protocol : `native` as the method scales it; `rescaled` by the single factor with the least L;
         `stretched` by the factors of û and of v̂ with the least L.
+
+    >>> import rectbench as rb
+    >>> rig = rb.load_rig("t265")
+    >>> found = distortion(rb.rectify(rig, method="abraham"), rig, protocol="rescaled")
+    >>> sorted(found.terms), round(float(found - sum(found.terms.values())), 9)
+    (['area', 'ratio', 'skew'], 0.0)
     """
     if (rig.left.size, rig.right.size) != (rect.left.source.size, rect.right.source.size):
         raise InvalidInput(f"the rectification is not one of rig {rig.name}: their image sizes differ")
@@ -152,20 +159,85 @@ PROTOCOLS: Mapping[Protocol, Callable[[FloatArray], tuple[float, float]]] = {
 }
 
 
-def log_distortion(jacobians: Jacobians) -> dict[str, float]:
-    """RMS of log σ1 and log σ2 after their common mean over both images is removed, and its split.
+def distortion_column(key: str, heading: str, meaning: str, **more: Any) -> Column:
+    """A distortion: better the smaller it is, and rounding below 10⁻⁶."""
+    return Column(key, heading, "", "lower", meaning, floor=1e-6, **more)
 
-    `log_distortion`² = `log_distortion_area`² + `log_distortion_anisotropy`²: what changes in size
-    from place to place, and what is squeezed. No scale of the image changes it, collapse included.
-    """
-    large, small = singular_values(*entries(jacobians.both), np)
-    if not large.size or not (small > 0).all():
-        return dict.fromkeys(("log_distortion", "log_distortion_area", "log_distortion_anisotropy"), math.nan)
-    size = (np.log(large) + np.log(small)) / 2
-    squeeze = (np.log(large) - np.log(small)) / 2
-    area, anisotropy = float(np.std(size)), float(np.sqrt(np.square(squeeze).mean()))
-    return {
-        "log_distortion": math.hypot(area, anisotropy),
-        "log_distortion_area": area,
-        "log_distortion_anisotropy": anisotropy,
-    }
+
+class DistortionMetric(Metric):
+    """Distortion L at the evaluation pixels, under each protocol."""
+
+    name, topic = "distortion", "Distortion"
+    columns = (
+        distortion_column(
+            "distortion_native",
+            "distortion, native",
+            "The paper's mean L per pixel, at the scale each method's authors choose. An image shrunk to "
+            "nothing has L = 1.",
+            tolerance=Tolerance(0.01, 1e-6),
+            shown="summary",
+            promised=True,
+            panel="native: as its authors scale it",
+        ),
+        distortion_column(
+            "distortion_rescaled",
+            "distortion, rescaled",
+            "L after the one scale that is best for it.",
+            tolerance=Tolerance(0.01, 1e-6),
+            shown="page",
+            promised=True,
+            panel="rescaled: best single scale",
+        ),
+        distortion_column(
+            "distortion_stretched",
+            "distortion, stretched",
+            "L after the best scales of width and of height.",
+            tolerance=Tolerance(0.01, 1e-6),
+            shown="summary",
+            promised=True,
+            panel="stretched: best width and height",
+        ),
+    )
+
+    def compute(self, case: Case) -> dict[str, float]:
+        """L of both images together."""
+        return {f"distortion_{name}": float(distortion_of(case.jacobians, name)) for name in PROTOCOLS}
+
+
+class DistortionDetail(Metric):
+    """Median, 95th percentile and terms of native distortion, and the share of pixels that it stands on."""
+
+    name, topic = "distortion_detail", "Distortion"
+    columns = (
+        distortion_column(
+            "distortion_native_median", "distortion, median", "Median of native L over the pixels."
+        ),
+        distortion_column(
+            "distortion_native_p95", "distortion, p95", "95th percentile of native L over the pixels."
+        ),
+        *(
+            distortion_column(f"distortion_native_{term}", f"distortion, {term} term", meaning, shown="pairs")
+            for term, meaning in (
+                ("area", "The part of native L from (S − 1)²."),
+                ("ratio", "The part from ½(|w1| − |w2|)²."),
+                ("skew", "The part from ½(w1·w2)²."),
+            )
+        ),
+        Column.share(
+            "distortion_pixels_mapped",
+            "grid mapped",
+            "higher",
+            "Share of the grid's pixels that are mapped at all.",
+            shown="pairs",
+        ),
+    )
+
+    def compute(self, case: Case) -> dict[str, float]:
+        """Of both images together."""
+        native = distortion_of(case.jacobians, "native")
+        return {
+            "distortion_native_median": native.median,
+            "distortion_native_p95": native.p95,
+            "distortion_pixels_mapped": native.valid_share,
+            **{f"distortion_native_{term}": value for term, value in native.terms.items()},
+        }

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from rectbench.errors import InvalidInput
 from rectbench.metrics.distortion import WEIGHTS
+from rectbench.plugins.metric import Case, Column, Metric
 from rectbench.types import FloatArray
 from rectbench.warps import Cubic, Epipolar, Profile, Rectification, Warp, evaluation_pixels
 from rectbench.warps.jacobians import entries
@@ -215,3 +216,22 @@ def _unit(name: str) -> FloatArray:
     unit = np.zeros(len(COEFFICIENTS))
     unit[COEFFICIENTS.index(name)] = 1.0
     return unit
+
+
+class EnergyShape(Metric):
+    """How convex the energy is about a fit of cubics."""
+
+    name, topic = "energy", "Energy"
+    columns = (
+        Column.share(
+            "energy_convex_share",
+            "energy convex",
+            None,
+            "Share of the energy's slices where the rows keep their order, out to ±50 % of the slope, on "
+            "which L is convex.",
+        ),
+    )
+
+    def compute(self, case: Case) -> dict[str, float]:
+        """NaN for a rectification without cubics."""
+        return {"energy_convex_share": energy_convex_share(case.rect)}

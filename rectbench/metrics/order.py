@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from rectbench.metrics.coverage import dense_pixels
+from rectbench.plugins.metric import Case, Column, Metric, Tolerance
 from rectbench.rigs import Rig
 from rectbench.types import FloatArray
 from rectbench.warps import Rectification, Warp, rectifying_rotations
@@ -20,6 +21,11 @@ def order(rect: Rectification, rig: Rig) -> dict[str, float]:
 
     (β, γ) belong to the true `rig`. Closure is the greatest |inverse(forward(x)) - x| in source
     pixels. All over pixels of both images that stay in the frame.
+
+    >>> import rectbench as rb
+    >>> rig = rb.load_rig("t265")
+    >>> order(rb.rectify(rig, method="abraham"), rig)["order_upright"]
+    1.0
     """
     rotations = rectifying_rotations(rig)
     sides = [_side(warp, R, rect.size) for warp, R in zip((rect.left, rect.right), rotations, strict=True)]
@@ -52,3 +58,48 @@ def _side(warp: Warp, R_epi_cam: FloatArray, size: tuple[int, int]) -> tuple[Flo
     upright = ((du_dgamma > 0) & (dv_dbeta > 0)).astype(float)
     closure = np.linalg.norm(warp.inverse(mapped) - pixels, axis=-1)
     return du_dgamma, dv_dbeta, upright, closure
+
+
+class Order(Metric):
+    """Whether points keep their order along rows and rows theirs, and whether the map can be undone."""
+
+    name, topic = "order", "Order"
+    columns = (
+        Column(
+            "order_du_dgamma_min",
+            "least ∂û/∂γ",
+            "px/rad",
+            None,
+            "Least growth of the column along an epipolar line; below 0, points change places.",
+            average="min",
+            shown="pairs",
+        ),
+        Column(
+            "order_dv_dbeta_min",
+            "least ∂v̂/∂β",
+            "px/rad",
+            None,
+            "Least growth of the row from one epipolar line to the next; below 0, rows change places.",
+            average="min",
+            shown="pairs",
+        ),
+        Column.share(
+            "order_upright",
+            "upright",
+            "higher",
+            "Share of pixels that are not mirrored (det J > 0).",
+            shown="pairs",
+        ),
+        Column.pixels(
+            "closure_px",
+            "closure",
+            "Largest |inverse(forward(x)) − x| in source pixels.",
+            average="max",
+            tolerance=Tolerance(0.0, 1e-6),
+            shown="pairs",
+        ),
+    )
+
+    def compute(self, case: Case) -> dict[str, float]:
+        """Over the pixels of both images that stay in the frame."""
+        return order(case.rect, case.rig)

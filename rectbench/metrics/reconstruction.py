@@ -7,8 +7,9 @@ import math
 import numpy as np
 
 from rectbench.errors import InvalidInput
-from rectbench.matching import Reconstruction
+from rectbench.matching import Reconstruction, reconstruct
 from rectbench.metrics.coverage import dense_pixels
+from rectbench.plugins.metric import Case, Column, Metric, Tolerance
 from rectbench.rendering.truth import Truth
 from rectbench.types import BoolArray, FloatArray
 
@@ -83,3 +84,55 @@ def _mean(values: FloatArray) -> float:
 def _quantile(values: FloatArray, q: float) -> float:
     found = values[np.isfinite(values)]
     return float(np.quantile(found, q)) if found.size else math.nan
+
+
+class DenseReconstruction(Metric):
+    """How much of what both cameras see dense matching on the rectified pair finds, and how far off."""
+
+    name, topic = "reconstruction", "Reconstruction"
+    needs = frozenset({"truth", "images"})
+    columns = (
+        Column.share(
+            "reconstruction_density", "density", "higher", "Share of source pixels that get any depth."
+        ),
+        Column.share(
+            "reconstruction_completeness",
+            "completeness",
+            "higher",
+            "Share of source pixels whose depth is within 5 % of the truth. Counted, as all of these, at the "
+            "pixels of the left source image that both cameras see.",
+            tolerance=Tolerance(0.0, 0.01),
+        ),
+        *(
+            Column.share(
+                f"reconstruction_completeness_{low}_{high}deg",
+                f"completeness, {low}–{high}°",
+                "higher",
+                f"Completeness of the pixels {low}° to {high}° from the left camera's axis.",
+            )
+            for low, high in ANGLES_DEG
+        ),
+        Column.share(
+            "depth_error_median", "depth error, median", "lower", "Median of |depth / true depth - 1|."
+        ),
+        Column.share("depth_error_p95", "depth error, p95", "lower", "95th percentile of the same."),
+        Column.pixels(
+            "dense_epe_px",
+            "disparity error",
+            "Mean distance between a pixel's dense match and its true place, in right source pixels.",
+        ),
+        *(
+            Column.share(
+                f"dense_bad_{px}px",
+                f"bad > {px} px",
+                "lower",
+                f"Share of source pixels whose dense match is missing or more than {px} px off.",
+            )
+            for px in BAD_PX
+        ),
+    )
+
+    def compute(self, case: Case) -> dict[str, float]:
+        """By semi-global matching on the images as the method rectifies them."""
+        images = case.pair.images
+        return reconstruction_scores(reconstruct(case.rect, images.left, images.right), case.pair.truth)

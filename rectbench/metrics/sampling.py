@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from rectbench.formulas.evaluation import evaluate_points
-from rectbench.metrics.distortion import PROTOCOLS, WEIGHTS
+from rectbench.metrics.distortion import PROTOCOLS, WEIGHTS, distortion_column
+from rectbench.plugins.metric import Case, Column, Metric
 from rectbench.types import FloatArray
 from rectbench.warps import Rectification, Warp, evaluation_pixels
 from rectbench.warps.jacobians import Jacobians, losses, singular_values
@@ -29,6 +30,11 @@ def every_pixel(rect: Rectification) -> dict[str, float]:
 
     `sampling_lost` is the share of the source area where some direction shrinks (σ2 < 1: pixels are
     lost), `sampling_invented` where some direction grows (σ1 > 1: pixels are invented).
+
+    >>> import rectbench as rb
+    >>> found = every_pixel(rb.rectify(rb.load_rig("t265"), method="abraham"))
+    >>> 0 <= found["sampling_lost"] <= 1
+    True
     """
     left, right = (
         warp.jacobian(evaluation_pixels(warp.source, SCALING_PIXELS)) for warp in (rect.left, rect.right)
@@ -73,3 +79,57 @@ def _formula(warp: Warp) -> Callable[..., tuple[Any, ...]]:
         return *(loss(s_u, s_v) for s_u, s_v in c.scales), lost, invented, ok
 
     return formula
+
+
+class AllPixelsDistortion(Metric):
+    """Distortion L over every pixel of both images, under each protocol."""
+
+    name, topic = "distortion_all_pixels", "Distortion"
+    columns = (
+        distortion_column(
+            "distortion_native_all_pixels",
+            "native, all pixels",
+            "Native L over every pixel, not the grid.",
+            panel="native, over all pixels",
+        ),
+        distortion_column(
+            "distortion_rescaled_all_pixels", "rescaled, all pixels", "The same after the one best scale."
+        ),
+        distortion_column(
+            "distortion_stretched_all_pixels",
+            "stretched, all pixels",
+            "The same after the best scales of width and of height.",
+        ),
+    )
+
+    def compute(self, case: Case) -> dict[str, float]:
+        """Of both images together."""
+        found = case.once(every_pixel)
+        return {column.key: found[column.key] for column in self.columns}
+
+
+class Sampling(Metric):
+    """Shares of the source area in which pixels are lost and in which they are invented."""
+
+    name, topic = "sampling", "Sampling"
+    columns = (
+        Column.share(
+            "sampling_lost",
+            "pixels lost",
+            "lower",
+            "Share of source area squeezed (σ2 < 1): detail is lost.",
+            shown="page",
+        ),
+        Column.share(
+            "sampling_invented",
+            "pixels invented",
+            "lower",
+            "Share of source area enlarged (σ1 > 1): interpolated.",
+            shown="pairs",
+        ),
+    )
+
+    def compute(self, case: Case) -> dict[str, float]:
+        """Of both images together."""
+        found = case.once(every_pixel)
+        return {column.key: found[column.key] for column in self.columns}

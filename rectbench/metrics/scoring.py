@@ -1,147 +1,97 @@
-"""All metrics of one rectification, as the columns of a result row."""
+"""All metrics that are asked for of one rectification, as the columns of a result row."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping
+from numbers import Real
+from pathlib import Path
 
-import numpy as np
+from rectbench.errors import InvalidInput, InvalidResult, UnknownName
+from rectbench.plugins.metric import METRICS, Case, Metric, Need
+from rectbench.registry import Plugin, is_path, registry
 
-from rectbench.errors import PoseNotFound
-from rectbench.matching import reconstruct
-from rectbench.metrics.coverage import coverage
-from rectbench.metrics.distortion import PROTOCOLS, distortion_of, log_distortion
-from rectbench.metrics.energy import energy_convex_share
-from rectbench.metrics.order import order
-from rectbench.metrics.reconstruction import reconstruction_scores
-from rectbench.metrics.rows import row_error
-from rectbench.metrics.sampling import every_pixel
-from rectbench.metrics.stopwatch import timed, warm_seconds
-from rectbench.plugins.metric import Case
-from rectbench.rigs import Rig
-from rectbench.types import Matches
-from rectbench.warps import Rectification
-from rectbench.warps.jacobians import Jacobians
-
-BOARD_ERRORS = ("mean", "median", "p95", "source_mean")
-"""What is told of the row errors of a board's corners."""
+BUNDLES: Mapping[str, tuple[str, ...]] = {
+    "geometry": (
+        "distortion",
+        "distortion_detail",
+        "distortion_all_pixels",
+        "log_distortion",
+        "sampling",
+        "coverage",
+        "order",
+    ),
+}
+"""Names that stand for several metrics. `geometry`: all that needs neither image nor match."""
+POSE = "pose"
+"""The metric that nobody has to ask for: it is computed wherever a pose is estimated."""
 
 
-def measure(
-    rect: Rectification,
-    rig: Rig,
-    *,
-    geometry: bool = True,
-    true_matches: Matches | None = None,
-    feature_matches: Matches | None = None,
-    board_matches: Matches | None = None,
-) -> dict[str, float]:
-    """The metric columns of a row.
+def metrics_of(asked: Iterable[str | Path]) -> dict[str, Plugin[Metric]]:
+    """The metrics of these names, bundles or files, each by what finds it in another process too.
 
-    Parameters
-    ----------
-    rect : what the method made of the rig it believed in.
-    rig : the true rig.
-    geometry : whether to score distortion, sampling, coverage and order, which need no match.
-    true_matches : exact correspondences, unoccluded in both images.
-    feature_matches : correspondences found in the images; scored apart.
-    board_matches : corners of a calibration board found in them; scored apart.
+    Raises UnknownName, with the nearest names; InvalidInput for a broken file, and where two metrics
+    have a column of one name.
     """
+    sources = [source for name in asked for source in BUNDLES.get(str(name), (str(name),))]
+    found = {_source(source): _metric(source) for source in sources}
+    owners = {column.key: plugin for plugin in registry(METRICS).plugins() for column in plugin.value.columns}
+    for plugin in found.values():
+        for column in plugin.value.columns:
+            owner = owners.setdefault(column.key, plugin)
+            if (owner.name, owner.path) != (plugin.name, plugin.path):
+                raise InvalidInput(
+                    f"two metrics have a column '{column.key}': {owner.path} and {plugin.path}"
+                )
+    return found
+
+
+def needs_of(asked: Iterable[str | Path]) -> frozenset[Need]:
+    """What of a pair these metrics look at beside the geometry.
+
+    >>> sorted(needs_of(["geometry", "reconstruction"]))
+    ['images', 'truth']
+    """
+    return frozenset().union(*(plugin.value.needs for plugin in metrics_of(asked).values()))
+
+
+def digests_of(asked: Iterable[str | Path]) -> dict[str, str]:
+    """The digests of these metrics' sources by their names, for the key of a cell."""
+    return {plugin.name: plugin.digest for plugin in metrics_of(asked).values()}
+
+
+def score(case: Case, asked: Iterable[str | Path]) -> dict[str, float]:
+    """The numbers of a row: of all that is asked, and of the pose where it was estimated.
+
+    Raises InvalidResult for a metric that gives anything but numbers, or for no column of its own.
+    """
+    wanted = [*asked, POSE] if case.pose_is_estimated else asked
     row: dict[str, float] = {}
-    if true_matches is not None:
-        row |= row_error(rect, *true_matches).columns()
-    if feature_matches is not None:
-        features = row_error(rect, *feature_matches).columns()
-        names = (
-            "row_error_mean_px",
-            "row_error_median_px",
-            "row_error_source_mean_px",
-            "row_error_matches",
+    for plugin in metrics_of(wanted).values():
+        row |= _numbers(plugin.value, case)
+    return row
+
+
+def _numbers(metric: Metric, case: Case) -> dict[str, float]:
+    found = metric.compute(case)
+    if not isinstance(found, Mapping):
+        raise InvalidResult(
+            f"metric {metric.name} returned a {type(found).__name__}; expected numbers by their columns"
         )
-        row |= {name.replace("row_error", "row_error_features"): features[name] for name in names}
-    if board_matches is not None:
-        board = row_error(rect, *board_matches).columns()
-        row |= {f"row_error_board_{name}_px": board[f"row_error_{name}_px"] for name in BOARD_ERRORS}
-        row["row_error_board_points"] = board["row_error_matches"]
-    return row | _geometry(rect, rig) if geometry else row
+    keys = {column.key for column in metric.columns}
+    for key, value in found.items():
+        if key not in keys:
+            raise InvalidResult(f"metric {metric.name} returned {key!r}, which is none of its columns")
+        if isinstance(value, bool) or not isinstance(value, Real):
+            raise InvalidResult(f"metric {metric.name} returned {value!r} for {key}; expected a number")
+    return {key: float(value) for key, value in found.items()}
 
 
-def _geometry(rect: Rectification, rig: Rig) -> dict[str, float]:
-    at_grid = Jacobians.at(rect)
-    native = distortion_of(at_grid, "native")
-    row = {
-        **distortion_columns(at_grid),
-        "distortion_native_median": native.median,
-        "distortion_native_p95": native.p95,
-        "distortion_pixels_mapped": at_grid.valid_share,
-    }
-    row |= {f"distortion_native_{term}": value for term, value in native.terms.items()}
-    return row | every_pixel(rect) | log_distortion(at_grid) | coverage(rect, rig) | order(rect, rig)
+def _metric(name: str) -> Plugin[Metric]:
+    try:
+        return registry(METRICS).get(name)
+    except UnknownName:
+        raise UnknownName("metric", name, [*registry(METRICS).names(), *BUNDLES]) from None
 
 
-def distortion_columns(at_grid: Jacobians) -> dict[str, float]:
-    """L under each protocol, the cheapest of the metrics."""
-    return {f"distortion_{protocol}": float(distortion_of(at_grid, protocol)) for protocol in PROTOCOLS}
-
-
-def needs_of(asked: Sequence[str]) -> frozenset[str]:
-    images = {"row_error_features", "row_error_board", "reconstruction"}
-    return frozenset({"images"} if images & set(asked) else set())
-
-
-def scoring_digest(asked: Sequence[str]) -> str:
-    return ""
-
-
-def score(case: Case, asked: Sequence[str]) -> dict[str, float]:
-    pair, rig, rectification = case.pair, case.rig, case.rect
-    columns: dict[str, float] = {}
-    if "timing" in asked and case.fit:
-        columns["fit_s"] = warm_seconds(case.fit, case.first_fit_s)
-    features, board = None, pair.board if "row_error_board" in asked else None
-    if board is not None:
-        case.remarks["board"] = board.kind
-    if "row_error_features" in asked:
-        try:
-            features = pair.features(by_estimate=case.pose_is_estimated)
-        except PoseNotFound as failure:
-            case.remarks["no_features"] = str(failure)
-    columns |= measure(
-        rectification,
-        rig,
-        geometry="geometry" in asked,
-        true_matches=pair.true_matches if "row_error" in asked else None,
-        feature_matches=features,
-        board_matches=board.matches if board else None,
-    )
-    if "distortion" in asked:
-        columns |= distortion_columns(case.jacobians)
-    if case.pose_is_estimated:
-        estimate = pair.estimate
-        rotation_deg, direction_deg = estimate.difference_deg(rig)
-        kind = "error" if pair.knows_truth else "difference"
-        columns |= {
-            f"pose_rotation_{kind}_deg": rotation_deg,
-            f"pose_direction_{kind}_deg": direction_deg,
-            "pose_rotation_sigma_deg": estimate.rotation_sigma_deg,
-            "pose_direction_sigma_deg": estimate.direction_sigma_deg,
-            "pose_inliers": float(len(estimate.inliers.left)),
-            "pose_matches": float(estimate.given),
-        }
-        if not pair.knows_truth and (contradiction := estimate.contradiction(rig)):
-            case.remarks["contradiction"] = contradiction
-    if "energy" in asked:
-        columns["energy_convex_share"] = energy_convex_share(rectification)
-    if "reconstruction" in asked:
-        found = reconstruct(rectification, pair.images.left, pair.images.right)
-        columns |= reconstruction_scores(found, pair.truth)
-    if "timing" in asked:
-        _, columns["maps_s"] = timed(lambda: (rectification.maps("left"), rectification.maps("right")))
-        left, right = (
-            np.full((camera.height, camera.width, 3), 127, dtype=np.uint8)
-            for camera in (rectification.left.source, rectification.right.source)
-        )
-        _, columns["warp_s"] = timed(lambda: rectification.remap(left, right))
-        if case.pose_is_estimated:
-            columns["pose_s"] = pair.pose_seconds()
-            columns["total_s"] = columns["pose_s"] + columns["fit_s"] + columns["warp_s"]
-    return columns
+def _source(name: str) -> str:
+    return str(Path(name).resolve()) if is_path(name) else name

@@ -10,7 +10,7 @@ from functools import cached_property
 from rectbench.errors import PoseNotFound
 from rectbench.images.stereo_pair import StereoPair
 from rectbench.matching import BoardMatches, PoseEstimate, board_matches
-from rectbench.metrics.stopwatch import timed
+from rectbench.metrics.timing import warm_seconds
 from rectbench.pairs.estimating import estimate_inputs, estimate_pose, load_estimate, save_estimate
 from rectbench.pairs.spec import ESTIMATED, PhotographedSpec, RenderedSpec
 from rectbench.rendering.truth import Truth
@@ -133,7 +133,7 @@ class Pair(ABC):
     @cached_property
     def _pose_seconds(self) -> float:
         _ = self.images
-        return timed(self._estimated_anew)[1]
+        return warm_seconds(self._estimated_anew)
 
     def believed_rig(self, pose: str) -> Rig:
         """What a rectifier is told under a level of `pose`: the rig, perturbed, or in the estimated pose.

@@ -18,6 +18,7 @@ if TYPE_CHECKING:  # what needs nothing but a figure's name is to be quick
     from numpy.typing import NDArray
 
     from rectbench.images.stereo_pair import StereoPair
+    from rectbench.plugins.metric import Column
     from rectbench.rendering.truth import Truth
     from rectbench.rigs import Rig
     from rectbench.types import FloatArray, Matches
@@ -66,10 +67,25 @@ class Result(Protocol):
     def cell(self) -> Any: ...
 
 
+class Columns(Protocol):
+    """What is known of the columns of a run.
+
+    column : one of them, by its key.
+    panels : the columns of a topic that stand side by side in a figure: by key, the words above the panel.
+    ranking : the one that methods are ranked by.
+    """
+
+    def column(self, key: str) -> Column: ...
+    def panels(self, topic: str) -> Mapping[str, str]: ...
+    @property
+    def ranking(self) -> Column: ...
+
+
 class Part(Protocol):
     """The results of a part of a report, or of all of it; names are in the run's order, each once.
 
     group : the part's name; empty of a report without parts.
+    catalogue : what is known of its columns.
     stated_seconds : times that somebody else stated, by stage: `pose`, `fit`, `warp`.
     failures : the results without a measurement.
     metrics : the columns in which any cell has a number.
@@ -82,6 +98,8 @@ class Part(Protocol):
 
     @property
     def group(self) -> str: ...
+    @property
+    def catalogue(self) -> Columns: ...
     @property
     def stated_seconds(self) -> Mapping[str, float]: ...
     @property

@@ -8,7 +8,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, ClassVar, Literal, Protocol
+from typing import Any, ClassVar, Literal, Protocol, TypeVar
 
 from rectbench.errors import InvalidInput
 from rectbench.images.stereo_pair import StereoPair
@@ -24,6 +24,8 @@ Better = Literal["lower", "higher"]
 Average = Literal["mean", "rms", "max", "min"]
 Need = Literal["truth", "images", "estimate"]
 Shown = Literal["pairs", "topic", "page", "summary"]
+
+T = TypeVar("T")
 
 TOPICS = (
     "Distortion",
@@ -65,6 +67,11 @@ class Column:
         main table on the page, or in the main table on a terminal too.
     without_truth : whether the main tables show it only where nobody knows the truth, as of photographs.
     promised : whether the rows have the column even where it was not asked for, empty then.
+    ranks : whether methods are ranked by it; one column of all metrics is.
+    panel : what stands above its panel in a chart of its topic; without, it has none.
+
+    >>> Column.share("kept", "kept", "higher", "Share that is kept.").full_heading
+    'kept [%]'
     """
 
     key: str
@@ -80,6 +87,28 @@ class Column:
     shown: Shown = "topic"
     without_truth: bool = False
     promised: bool = False
+    ranks: bool = False
+    panel: str = ""
+
+    def __post_init__(self) -> None:
+        """Raises InvalidInput for a tolerance about a number of which neither way is worse."""
+        if self.tolerance and self.better is None:
+            raise InvalidInput(f"column '{self.key}' has a tolerance; expected `better` beside it")
+
+    @classmethod
+    def pixels(cls, key: str, heading: str, meaning: str, **more: Any) -> Column:
+        """A distance in pixels, better the smaller it is; what is below 10⁻⁶ is rounding."""
+        return cls(key, heading, "px", "lower", meaning, floor=1e-6, **more)
+
+    @classmethod
+    def share(cls, key: str, heading: str, better: Better | None, meaning: str, **more: Any) -> Column:
+        """A share, stored from 0 to 1 and shown in percent."""
+        return cls(key, heading, "%", better, meaning, scale=100.0, **more)
+
+    @classmethod
+    def count(cls, key: str, heading: str, meaning: str, **more: Any) -> Column:
+        """A number of things."""
+        return cls(key, heading, meaning=meaning, is_count=True, **more)
 
     @property
     def is_percentage(self) -> bool:
@@ -165,6 +194,7 @@ class Case:
     """Seconds of the fit that gave `rect`."""
     remarks: dict[str, str] = field(default_factory=dict)
     """What is to be said beside the numbers, by a name; metrics add theirs."""
+    _made: dict[Callable[[Rectification], Any], Any] = field(default_factory=dict, init=False, repr=False)
 
     @property
     def rig(self) -> Rig:
@@ -176,11 +206,26 @@ class Case:
         """At the evaluation pixels of both images."""
         return Jacobians.at(self.rect)
 
+    def once(self, compute: Callable[[Rectification], T]) -> T:
+        """`compute` of the rectification, done once however many metrics ask for it."""
+        if compute not in self._made:
+            self._made[compute] = compute(self.rect)
+        made: T = self._made[compute]
+        return made
+
 
 class Metric(ABC):
     """A metric: one file, one class. Tables, gate, page and glossary take all they show from its columns.
 
     The class's docstring says in its first line what is measured.
+
+    >>> class Tallness(Metric):
+    ...     "How tall the output is."
+    ...     name, topic = "tallness", "Sampling"
+    ...     columns = (Column.pixels("tallness_px", "tallness", "Height of the rectified images."),)
+    ...
+    ...     def compute(self, case):
+    ...         return {"tallness_px": float(case.rect.size[1])}
     """
 
     name: ClassVar[str]
@@ -207,6 +252,9 @@ def _described(value: Any) -> Described[Metric] | None:
     for attribute, kind in (("name", str), ("topic", str), ("columns", tuple)):
         if not isinstance(found := getattr(value, attribute, None), kind) or not found:
             raise InvalidInput(f"{type(value).__name__}.{attribute} is {found!r}; expected a {kind.__name__}")
+    for column in value.columns:
+        if not (isinstance(column, Column) and column.key.isidentifier()):
+            raise InvalidInput(f"{type(value).__name__}.columns has {column!r}; expected a Column with a key")
     return Described(value.name, (inspect.getdoc(type(value)) or "").partition("\n")[0], value)
 
 

@@ -8,9 +8,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Literal
 
 import pandas as pd
 
@@ -18,6 +17,7 @@ from rectbench.errors import InvalidInput, UnknownName
 from rectbench.experiments.spec import REPORTS
 from rectbench.experiments.tasks import IDENTITY, Cell
 from rectbench.pairs.spec import ESTIMATED
+from rectbench.plugins.metric import Column
 from rectbench.registry import registry
 from rectbench.runs.record import read_record
 from rectbench.runs.rows import Row, read_rows
@@ -29,59 +29,9 @@ KEY = [name for name in IDENTITY if name != "report"]
 GOOD, REGRESSION, INCOMPLETE = 0, 1, 3
 
 
-@dataclass(frozen=True)
-class Tolerance:
-    """How far a column may be worse than accepted: by `relative` of the accepted value, plus `absolute`."""
-
-    better: Literal["lower", "higher"]
-    relative: float
-    absolute: float
-
-    def change(self, accepted: float, now: float) -> Literal["same", "better", "worse"]:
-        """How `now` stands to `accepted`; a number that is no longer there is worse."""
-        if math.isnan(accepted) or math.isnan(now):
-            if math.isnan(accepted) and math.isnan(now):
-                return "same"
-            return "worse" if math.isnan(now) else "better"
-        if accepted == now:
-            return "same"  # infinities too
-        if math.isfinite(accepted) and abs(now - accepted) <= self.relative * abs(accepted) + self.absolute:
-            return "same"
-        return "better" if (now < accepted) == (self.better == "lower") else "worse"
-
-
-GATED: dict[str, Tolerance] = {
-    "row_error_mean_px": Tolerance("lower", 0.02, 1e-6),
-    "row_error_p95_px": Tolerance("lower", 0.05, 1e-6),
-    "row_error_source_mean_px": Tolerance("lower", 0.02, 1e-6),
-    "row_error_board_mean_px": Tolerance("lower", 0.05, 0.01),
-    "row_error_features_mean_px": Tolerance("lower", 0.1, 0.02),
-    "distortion_native": Tolerance("lower", 0.01, 1e-6),
-    "distortion_rescaled": Tolerance("lower", 0.01, 1e-6),
-    "distortion_stretched": Tolerance("lower", 0.01, 1e-6),
-    "log_distortion": Tolerance("lower", 0.01, 1e-6),
-    "coverage_pixels": Tolerance("higher", 0.0, 0.002),
-    "coverage_solid_angle": Tolerance("higher", 0.0, 0.002),
-    "closure_px": Tolerance("lower", 0.0, 1e-6),
-    "reconstruction_completeness": Tolerance("higher", 0.0, 0.01),
-    "pose_rotation_error_deg": Tolerance("lower", 0.05, 0.002),
-    "pose_direction_error_deg": Tolerance("lower", 0.05, 0.01),
-}
-"""The gated columns. Relative where rounding and libraries move the last digits of a fit; features depend
-on the detector's version most of all."""
-
 ESTIMATED_SLACK = 10.0
 """How many times as far off a column may be where the pose was found in the images: a feature more or less,
 and all that follows from the pose moves a little."""
-
-
-def tolerance_for(column: str, pose: str) -> Tolerance:
-    """How far a column may be worse than accepted, given where the pose came from."""
-    tolerance = GATED[column]
-    if pose != ESTIMATED:
-        return tolerance
-    wider = replace(tolerance, relative=ESTIMATED_SLACK * tolerance.relative)
-    return replace(wider, absolute=ESTIMATED_SLACK * tolerance.absolute)
 
 
 @dataclass
@@ -129,7 +79,8 @@ def accept(run_dir: Path, path: Path) -> int:
         raise InvalidInput(f"{run_dir} measured nothing; there is nothing to accept")
     if not run.record.is_whole:
         raise InvalidInput(f"{run_dir} is a part of its report; expected a run without a selection")
-    columns = [name for name in GATED if name in run.table and run.table[name].notna().any()]
+    gated = [column.key for column in run.catalogue.gated]
+    columns = [name for name in gated if name in run.table and run.table[name].notna().any()]
     table = run.table[[*KEY, "status", *columns]]
     write_atomically(path, table.to_csv(index=False, float_format="%.9g"))
     return len(table)
@@ -141,10 +92,12 @@ def gate(run_dir: Path, path: Path) -> Gating:
     Raises InvalidInput where either cannot be read.
     """
     run, accepted = read_run(run_dir), _read_accepted(path)
-    columns = [name for name in GATED if name in accepted]
+    columns = [column for column in run.catalogue.gated if column.key in accepted]
     now = _by_cell(run.results)
     known = _by_cell(read_rows(accepted.to_dict("records"), path))
     gating = Gating()
+    unknown = set(map(str, accepted)) - {*IDENTITY, "status", *(column.key for column in columns)}
+    gating.incomplete += [f"{name}: no metric of the run has this column" for name in sorted(unknown)]
     for cell, row in known.items():
         if cell in now:
             _compare(row, now[cell], columns, gating)
@@ -155,7 +108,7 @@ def gate(run_dir: Path, path: Path) -> Gating:
     return gating
 
 
-def _compare(known: Row, now: Row, columns: Sequence[str], gating: Gating) -> None:
+def _compare(known: Row, now: Row, columns: Sequence[Column], gating: Gating) -> None:
     if known.status != now.status:
         kind = gating.improvements if now.ok else gating.regressions
         because = f" ({now.reason})" if now.reason else ""
@@ -164,12 +117,13 @@ def _compare(known: Row, now: Row, columns: Sequence[str], gating: Gating) -> No
     if not now.ok:
         return
     gating.compared += 1
+    slack = ESTIMATED_SLACK if known.pose == ESTIMATED else 1.0
     for column in columns:
-        accepted, value = (row.metrics.get(column, math.nan) for row in (known, now))
-        change = tolerance_for(column, known.pose).change(accepted, value)
+        accepted, value = (row.metrics.get(column.key, math.nan) for row in (known, now))
+        change = column.change(accepted, value, slack)
         if change != "same":
             kind = gating.improvements if change == "better" else gating.regressions
-            kind.append(f"{_name(known)}: {column} {accepted:.6g} -> {value:.6g}")
+            kind.append(f"{_name(known)}: {column.key} {accepted:.6g} -> {value:.6g}")
 
 
 def _read_accepted(path: Path) -> pd.DataFrame:

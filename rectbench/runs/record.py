@@ -18,7 +18,11 @@ from rectbench.experiments.execution.running import Execution
 from rectbench.experiments.planning import Plan, Selection
 from rectbench.experiments.spec import Report
 from rectbench.experiments.tasks import IDENTITY, CellTask
+from rectbench.metrics.catalogue import Catalogue, known
+from rectbench.metrics.scoring import metrics_of
 from rectbench.pairs.finding.photographs import UNREADABLE, Photographs
+from rectbench.plugins.metric import Column
+from rectbench.registry import is_path
 from rectbench.runs.machine import Machine
 from rectbench.store.keys import canonical_json
 from rectbench.writing import write_atomically
@@ -30,26 +34,6 @@ LEADING = (*IDENTITY, "status", "reason")
 TEXTS = ("group", "notes")
 """Columns that are neither identity nor metric: the part of the report, what the method says of itself."""
 SHOWN_CHARACTERS = 60
-
-PROMISED = (
-    "row_error_mean_px",
-    "row_error_median_px",
-    "row_error_p95_px",
-    "row_error_max_px",
-    "row_error_below_1px",
-    "row_error_features_mean_px",
-    "distortion_native",
-    "distortion_rescaled",
-    "distortion_stretched",
-    "log_distortion",
-    "coverage_pixels",
-    "coverage_solid_angle",
-    "valid_output",
-    "fit_s",
-    "maps_s",
-    "warp_s",
-)
-"""Columns that are always there, empty where the report does not measure them."""
 
 
 class _Frozen(BaseModel):
@@ -123,6 +107,8 @@ class RunRecord(Machine):
     data: str | None
     """The folder of the photographs."""
     photographs: FoundPhotographs | None
+    columns: Mapping[str, tuple[Column, ...]]
+    """By topic: those of metrics that were given by their files, which may be gone when the run is read."""
     cells: tuple[CellTask, ...]
     """As they were planned; a row each."""
 
@@ -145,6 +131,7 @@ class RunRecord(Machine):
             spec=plan.report,
             data=None if found is None else str(found.folder),
             photographs=None if found is None else FoundPhotographs.of(found),
+            columns=_foreign_columns(plan),
             cells=plan.tasks,
             **Machine.here().model_dump(),
         )
@@ -152,6 +139,11 @@ class RunRecord(Machine):
     def to_json(self, *without: str) -> str:
         """Its JSON, indented, the fields `without` left out."""
         return json.dumps(self.model_dump(mode="json", exclude=set(without)), indent=1, ensure_ascii=False)
+
+
+def _foreign_columns(plan: Plan) -> Mapping[str, tuple[Column, ...]]:
+    asked = dict.fromkeys(name for task in plan.tasks for name in task.metrics if is_path(name))
+    return Catalogue.of(plugin.value for plugin in metrics_of(asked).values()).topics
 
 
 def table_of(plan: Plan, outcomes: Sequence[Outcome]) -> pd.DataFrame:
@@ -163,8 +155,9 @@ def table_of(plan: Plan, outcomes: Sequence[Outcome]) -> pd.DataFrame:
         rows.append(
             {**task.cell.model_dump(), **ended, "group": task.group, **outcome.metrics, "notes": notes}
         )
-    measured = dict.fromkeys(name for outcome in outcomes for name in outcome.metrics)
-    metrics = [*PROMISED, *(name for name in measured if name not in PROMISED)]
+    catalogue = known().joined(_foreign_columns(plan))
+    measured = {name for outcome in outcomes for name in outcome.metrics}
+    metrics = catalogue.in_display_order(measured.union(catalogue.promised))
     table = pd.DataFrame(rows, columns=[*LEADING, "group", *metrics, "notes"])
     return table.astype({**dict.fromkeys(metrics, "float64"), "seed": "int64"})
 

@@ -12,7 +12,7 @@ import pandas as pd
 
 from rectbench.errors import InvalidInput
 from rectbench.experiments.pair_sources import PairSource, StatedPart
-from rectbench.metrics.catalogue import in_display_order
+from rectbench.metrics.catalogue import Catalogue, known
 from rectbench.runs.record import LEADING, PARQUET, RunRecord, read_record
 from rectbench.runs.rows import Row, distinct, read_rows
 
@@ -60,7 +60,12 @@ class Run:
     @cached_property
     def metrics(self) -> tuple[str, ...]:
         """Metrics measured in at least one cell, in the order of display."""
-        return tuple(in_display_order({key for r in self.results for key in r.metrics}))
+        return tuple(self.catalogue.in_display_order({key for r in self.results for key in r.metrics}))
+
+    @cached_property
+    def catalogue(self) -> Catalogue:
+        """What is known of its columns: by the metrics of this machine, else by run.json."""
+        return known().joined(self.record.columns)
 
     @cached_property
     def pair_source(self) -> PairSource:

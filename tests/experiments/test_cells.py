@@ -1,37 +1,14 @@
 from __future__ import annotations
 
-import time
-
 import numpy as np
-import pytest
 
 from rectbench.experiments.execution.cells import problem_of
 from rectbench.experiments.planning import make_plan
 from rectbench.experiments.tasks import CellTask
-from rectbench.metrics.stopwatch import timed
 from rectbench.pairs.opening import open_pair
 from rectbench.rigs import Rig
 from rectbench.store.store import Store
 from tests.experiments.fakes import small_report
-
-
-def test_times_are_warm_and_the_best_of_three() -> None:
-    naps = iter([0.2, 0.03, 0.01, 0.05])
-    result, seconds = timed(lambda: time.sleep(next(naps)) or "done")
-    assert result == "done"
-    assert 0.01 <= seconds < 0.03
-    assert next(naps, None) is None
-
-
-def test_a_slow_call_is_made_once() -> None:
-    calls: list[int] = []
-
-    def slow() -> None:
-        calls.append(1)
-        time.sleep(1.05)
-
-    assert timed(slow)[1] == pytest.approx(1.05, abs=0.3)
-    assert len(calls) == 1
 
 
 def believed(task: CellTask, store: Store) -> Rig:

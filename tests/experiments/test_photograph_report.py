@@ -194,7 +194,6 @@ def test_data_and_report_have_to_fit(tmp_path: Path, folder: Path, shell: Shell)
 @pytest.mark.parametrize(
     ("change", "said"),
     [
-        ({"metrics": ("row_error",)}, "metric row_error needs the truth"),
         ({"poses": ("exact",)}, "pose of photographs is exact; expected calibrated or estimated"),
         ({"scenes": ("street",)}, "scenes stand beside photographs"),
         ({"methods": ()}, "methods are missing"),
@@ -203,3 +202,9 @@ def test_data_and_report_have_to_fit(tmp_path: Path, folder: Path, shell: Shell)
 def test_what_photographs_have_not_cannot_be_asked(change: dict[str, object], said: str) -> None:
     with pytest.raises(ValidationError, match=said):
         rb.Report(**{**REPORT.model_dump(), **change})
+
+
+def test_a_metric_of_photographs_needs_no_truth(folder: Path) -> None:
+    asking = REPORT.model_copy(update={"metrics": ("geometry", "row_error")})
+    with pytest.raises(rb.InvalidInput, match="metric row_error needs the truth, which photographs have not"):
+        make_plan(asking, data=folder)

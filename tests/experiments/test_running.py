@@ -16,8 +16,8 @@ import pandas as pd
 import pytest
 
 import rectbench as rb
+from rectbench.metrics.catalogue import known
 from rectbench.runs.making import run
-from rectbench.runs.record import PROMISED
 from rectbench.runs.run import read_run
 from rectbench.store.store import STORE_VARIABLE, Store
 from tests.experiments.fakes import FIELDS, small_report, write_method, write_scene
@@ -154,7 +154,7 @@ def test_a_run_folder_holds_the_rows_and_the_plan(report_of_four: rb.Report, tmp
     assert list(written.columns) == list(table.columns)
     identity = ["report", "scene", "rig", "motion", "pose", "method", "options", "seed"]
     assert list(table.columns[:10]) == [*identity, "status", "reason"]
-    assert set(PROMISED) <= set(table.columns)
+    assert set(known().promised) <= set(table.columns)
     facts = json.loads((tmp_path / "run" / "run.json").read_text())
     assert facts["report"] == "small"
     assert len(facts["cells"]) == len(table) == 4

@@ -152,6 +152,7 @@ FACTS: dict[str, Any] = {
     "versions": {"rectbench": "0.1.0", "numpy": "2.4.6", "mitsuba": "3.9.1", "opencv": "5.0.0"},
     "data": None,
     "photographs": None,
+    "columns": {},
     "cells": (),
 }
 

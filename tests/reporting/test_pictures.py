@@ -10,7 +10,7 @@ import pytest
 
 import rectbench as rb
 from rectbench.errors import Unsupported
-from rectbench.metrics.catalogue import PROTOCOLS, STAGES
+from rectbench.metrics.catalogue import known
 from rectbench.plugins.figure import FigureData, Sources
 from rectbench.reporting.charts.bars import pair_chart
 from rectbench.reporting.charts.energy import Energy, shape_of
@@ -193,8 +193,9 @@ def test_what_lies_beyond_the_scale_has_a_colour_of_its_own(write_run: WriteRun,
 
 def test_protocols_stand_side_by_side_with_the_pairs_below(write_run: WriteRun) -> None:
     run = read_run(write_run(quick_rows(scenes=("street", "room"), rigs=("t265",), poses=("exact",))))
-    chart = pair_chart(run, "L", PROTOCOLS, "exact")
-    shown = [title for key, title in PROTOCOLS.items() if key in run.metrics]
+    protocols = known().panels("Distortion")
+    chart = pair_chart(run, "L", protocols, "exact")
+    shown = [title for key, title in protocols.items() if key in run.metrics]
     assert list(chart.panels) == shown
     assert list(chart.panels[shown[0]]) == ["street\nt265", "room\nt265"]
     axes = draw_bars(chart, LOOKS).axes[: len(shown)]
@@ -203,7 +204,7 @@ def test_protocols_stand_side_by_side_with_the_pairs_below(write_run: WriteRun) 
 
 def test_stated_times_are_lines_with_their_number(write_run: WriteRun) -> None:
     row = make_row("street", "t265", "exact", "abraham", total_s=0.1)
-    chart = stage_chart(read_run(write_run([row])), STAGES, {"fit": 3.0, "total": 15.0})
+    chart = stage_chart(read_run(write_run([row])), known().panels("Time"), {"fit": 3.0, "total": 15.0})
     ax = draw_bars(chart, LOOKS).axes[0]
     assert [text.get_text() for text in ax.texts] == ["3", "15"]
     assert ax.get_yscale() == "log"

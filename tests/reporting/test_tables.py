@@ -77,7 +77,8 @@ def test_rms_is_pooled_and_a_maximum_stays_one(write_run: WriteRun) -> None:
 
     run = read_run(write_run(quick_rows(poses=("perturbed",))))
     results = run.select(method="abraham")
-    averages = summarise("abraham", results, ["row_error_rms_px", "row_error_max_px"]).averages
+    columns = map(run.catalogue.column, ("row_error_rms_px", "row_error_max_px"))
+    averages = summarise("abraham", results, columns).averages
     rms = [r.metrics["row_error_rms_px"] for r in results]
     assert averages["row_error_rms_px"].value == pytest.approx(np.sqrt(np.mean(np.square(rms))))
     assert averages["row_error_max_px"].value == max(r.metrics["row_error_max_px"] for r in results)

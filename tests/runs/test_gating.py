@@ -4,6 +4,7 @@ import json
 import math
 from collections.abc import Callable
 from pathlib import Path
+from typing import Literal
 
 import pandas as pd
 import pytest
@@ -12,11 +13,12 @@ import rectbench as rb
 from rectbench.experiments.execution.outcomes import Outcome
 from rectbench.experiments.execution.running import Execution
 from rectbench.experiments.planning import make_plan
-from rectbench.runs.gating import Tolerance, accept, accepted_path, gate
+from rectbench.runs.gating import accept, accepted_path, gate
 from rectbench.runs.record import RunRecord, table_of, write_run
 from tests.experiments.fakes import small_report, write_report_file
 
 METRICS = {"row_error_mean_px": 0.1, "log_distortion": 0.25, "coverage_pixels": 0.9, "fit_s": 0.01}
+BETTER: tuple[Literal["lower", "higher"], ...] = ("lower", "higher")
 Change = Callable[[pd.DataFrame], pd.DataFrame]
 
 
@@ -154,10 +156,13 @@ def test_no_run_or_no_accepted_numbers_is_wrong_usage(tmp_path: Path, accepted: 
 
 
 def test_tolerances_have_a_direction() -> None:
-    lower, higher = Tolerance("lower", 0.1, 0.0), Tolerance("higher", 0.1, 0.0)
+    lower, higher = (rb.Column("x", "x", better=way, tolerance=rb.Tolerance(0.1, 0.0)) for way in BETTER)
     assert [lower.change(1.0, now) for now in (0.8, 0.95, 1.05, 1.2)] == ["better", "same", "same", "worse"]
     assert [higher.change(1.0, now) for now in (0.8, 1.2)] == ["worse", "better"]
     assert lower.change(math.inf, math.inf) == lower.change(math.nan, math.nan) == "same"
     assert lower.change(math.inf, 1.0) == "better"
     assert lower.change(0.0, 1e-9) == "worse"
-    assert Tolerance("lower", 0.0, 1e-6).change(0.0, 1e-9) == "same"
+    assert lower.change(1.0, 1.5, slack=10) == "same"
+    assert rb.Column("x", "x", better="lower", tolerance=rb.Tolerance(0.0, 1e-6)).change(0.0, 1e-9) == "same"
+    with pytest.raises(rb.InvalidInput, match="expected `better`"):
+        rb.Column("x", "x", tolerance=rb.Tolerance(0.0, 1e-6))

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import json
-import time
 from dataclasses import asdict
 from pathlib import Path
 
 from rectbench.experiments.execution.desk import DESK
 from rectbench.experiments.execution.outcomes import LASTING, Outcome, outcome_of
 from rectbench.experiments.tasks import CellTask
-from rectbench.metrics.scoring import needs_of, score, scoring_digest
+from rectbench.metrics.scoring import digests_of, needs_of, score
+from rectbench.metrics.timing import timed
 from rectbench.pairs.pair import Pair
 from rectbench.pairs.rendered import RenderedPair
 from rectbench.pairs.rendering import give_memory_back
@@ -39,8 +39,7 @@ def cell_inputs(task: CellTask, pair: Pair) -> Inputs:
         "method": method.name,
         "method_source": method.digest,
         "options": checked_options(method, task.options).model_dump(mode="json"),
-        "metrics": sorted(task.metrics),
-        "metrics_source": scoring_digest(task.metrics),
+        "metrics": digests_of(task.metrics),
         "match_count": task.match_count,
         "match_noise_px": task.match_noise_px,
         "code": code_digest(__name__),
@@ -114,9 +113,7 @@ def _measured(task: CellTask, pair: Pair) -> Outcome:
     def fit() -> Rectification:
         return method.value.fit(problem, options)
 
-    start = time.perf_counter()
-    rectification = fit()
-    first_fit_s = time.perf_counter() - start
+    rectification, first_fit_s = timed(fit)
     check_result(method.name, rectification, problem)
     case = Case(
         rectification,

@@ -5,15 +5,14 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from itertools import product
 
-from rectbench.metrics.catalogue import PROTOCOLS, ROW_ERRORS, column
 from rectbench.plugins.figure import Drawing, Figure, FigureData, Part, Result
 from rectbench.reporting.charts.grouped_bars import Bar, BarChart, bar_drawing, bar_of
 from rectbench.reporting.tables.labels import pair_labels
 
 _BOUNDED = ("distortion_rescaled", "distortion_stretched")
 """Never far above 1, as every image may be shrunk: a logarithmic axis would hide a third more or less."""
+_RANKING = "Log distortion on each pair: free of scale, and what methods are ranked by."
 _CAPTIONS = {
-    "log_distortion": "Log distortion on each pair: free of scale, and what methods are ranked by.",
     "distortion_native": "The paper's distortion L on each pair, each method at its authors' own scale.",
     "distortion_rescaled": "The same after the one scale of the image that is best for each method.",
 }
@@ -39,36 +38,38 @@ def _by_scene(given: FigureData) -> Iterator[Drawing]:
             chart = bar_chart(part, "row_error_mean_px", pose, reference=1.0)
             caption = "Mean row error of true correspondences on each pair."
             yield bar_drawing(chart, given, "row-error", f"Row error, {pose} pose", caption, pose)
-    for key, caption in _CAPTIONS.items():
+    for key, caption in {part.catalogue.ranking.key: _RANKING, **_CAPTIONS}.items():
         if key in part.metrics:
             chart = bar_chart(part, key, part.geometric_pose)
-            yield bar_drawing(chart, given, key, column(key).heading.capitalize(), caption)
+            yield bar_drawing(chart, given, key, part.catalogue.column(key).heading.capitalize(), caption)
 
 
 def _by_pair(given: FigureData) -> Iterator[Drawing]:
     part, pose = given.part, given.part.geometric_pose
-    if any(key in part.metrics for key in ROW_ERRORS):
+    row_errors, protocols = part.catalogue.panels("Row error"), part.catalogue.panels("Distortion")
+    if any(key in part.metrics for key in row_errors):
         for noisy in part.noisy_poses:
-            chart = pair_chart(part, "row error [px]", ROW_ERRORS, noisy, reference=1.0)
+            chart = pair_chart(part, "row error [px]", row_errors, noisy, reference=1.0)
             caption = "Mean row error on each pair, measured in the images" + (
                 " and against the truth." if part.has_truth else "."
             )
             of = noisy if len(part.noisy_poses) > 1 else ""
             yield bar_drawing(chart, given, "row-error", f"Row error, {noisy} pose", caption, of)
-    if any(key in part.metrics for key in PROTOCOLS):
-        chart = pair_chart(part, "distortion L", PROTOCOLS, pose, bounded=_BOUNDED)
+    if any(key in part.metrics for key in protocols):
+        chart = pair_chart(part, "distortion L", protocols, pose, bounded=_BOUNDED)
         caption = "The paper's distortion L on each pair, under each protocol."
         if chart.linear:
             caption += " Rescaled and stretched have a linear axis from 0."
         yield bar_drawing(chart, given, "distortion", "Distortion by protocol", caption)
-    if "log_distortion" in part.metrics:
-        chart = pair_chart(part, "log distortion", {"log_distortion": ""}, pose)
-        yield bar_drawing(chart, given, "log-distortion", "Log distortion", _CAPTIONS["log_distortion"])
+    ranking = part.catalogue.ranking
+    if ranking.key in part.metrics:
+        chart = pair_chart(part, ranking.heading, {ranking.key: ""}, pose)
+        yield bar_drawing(chart, given, ranking.key, ranking.heading.capitalize(), _RANKING)
 
 
 def bar_chart(run: Part, key: str, pose: str, reference: float | None = None) -> BarChart:
     """Collect a metric's bars; `reference` is a value worth a line, in the shown unit."""
-    shown_as = column(key)
+    shown_as = run.catalogue.column(key)
     panels: dict[str, dict[str, dict[str, Bar]]] = {}
     for rig, motion in product(run.rigs, run.motions):
         results = run.select(rig=rig, motion=motion, pose=pose)
@@ -110,15 +111,18 @@ def pair_chart(
     panels: dict[str, dict[str, dict[str, Bar]]] = {}
     for key, title in sorted(titles.items(), key=lambda item: item[0] in bounded):
         if key in run.metrics:
+            scale = run.catalogue.column(key).scale
             panels[title] = {
                 label: {
-                    method: bar_of(run.select(results, place=place, method=method), key, column(key).scale)
+                    method: bar_of(
+                        run.select(results, place=place, method=method), key, run.catalogue.column(key).scale
+                    )
                     for method in run.methods
                 }
                 for place, label in labels.items()
                 if not _is_not_to_be_had(run.select(results, place=place), key)
             }
-    floor = max(column(key).floor for key in titles)
+    floor = max(run.catalogue.column(key).floor for key in titles)
     linear = frozenset(titles[key] for key in bounded if titles[key] in panels)
     if len(linear) == len(panels):
         linear = frozenset()  # no others to set them apart from

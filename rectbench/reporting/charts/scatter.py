@@ -40,7 +40,7 @@ class DistortionCoverage(Figure):
         """One chart, where both were measured."""
         metrics = given.part.metrics
         coverage = next((k for k in ("coverage_solid_angle", "coverage_pixels") if k in metrics), None)
-        measures = tuple(k for k in ("log_distortion", "distortion_rescaled") if k in metrics)
+        measures = tuple(k for k in (given.part.catalogue.ranking.key, "distortion_rescaled") if k in metrics)
         if coverage and measures:
             data = scatter(given.part, coverage, measures)
             yield Drawing(

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from rectbench.metrics.catalogue import STAGES
 from rectbench.plugins.figure import Drawing, Figure, FigureData, Part
 from rectbench.reporting.charts.grouped_bars import BarChart, bar_drawing, bar_of
 
@@ -17,12 +16,13 @@ class Timing(Figure):
 
     def drawings(self, given: FigureData) -> Iterator[Drawing]:
         """One chart, where any stage was timed."""
-        if not any(key in given.part.metrics for key in STAGES):
+        stages = given.part.catalogue.panels("Time")
+        if not any(key in given.part.metrics for key in stages):
             return
         stated = dict(given.run.stated_seconds)
         if stated:
             stated["total"] = sum(stated.values())
-        chart = stage_chart(given.part, STAGES, stated)
+        chart = stage_chart(given.part, stages, stated)
         caption = "Seconds of each stage, tables being part of the warp" + (
             "; the lines are stated, not measured here." if stated else "."
         )

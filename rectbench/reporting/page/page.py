@@ -6,7 +6,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from rectbench.metrics.catalogue import column
 from rectbench.plugins.metric import Column
 from rectbench.reporting.asked import methods_part, part_title
 from rectbench.reporting.figures import EXTENSIONS, Drawn
@@ -113,7 +112,7 @@ def render_page(run: Run, tables: Sequence[Table], drawn: Sequence[Drawn]) -> st
         failures=of_kind.get("failures"),
         tables=list(tables),
         colours={method: look.colour for method, look in looks(run.methods).items()},
-        glossary=[column(key) for key in run.metrics],
+        glossary=[run.catalogue.column(key) for key in run.metrics],
         facts=run_facts(run),
         full_json=run.record.to_json("cells"),
         reproduce=run.record.command,
@@ -128,14 +127,15 @@ def _methods(run: Run) -> tuple[str, ...]:
 
 def _part(part: Run, tables: Sequence[Table], drawn: Sequence[Drawn]) -> Part:
     anchor = slug("part", part.group) if part.group else ""
-    found: dict[str, Topic] = {}
-    mine = [table for table in tables if table.part == part.group and table.kind in _TABLES]
+    heading_of = {slug(topic): topic for topic in part.catalogue.topics} | _TABLES
+    mine = [table for table in tables if table.part == part.group and table.kind in heading_of]
     figures = [one for one in drawn if one.placed.part == part.group]
-    for heading in (*(_TABLES[table.kind] for table in mine), *(one.placed.topic for one in figures)):
+    found: dict[str, Topic] = {}
+    for heading in (*(heading_of[table.kind] for table in mine), *(one.placed.topic for one in figures)):
         found[heading] = Topic(
             slug(anchor, heading),
             heading,
-            [table for table in mine if _TABLES[table.kind] == heading],
+            [table for table in mine if heading_of[table.kind] == heading],
             [one for one in figures if one.placed.topic == heading],
         )
     between = sorted(found.keys() - {*FIRST, *LAST})

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rectbench.images.stereo_pair import StereoPair
-from rectbench.metrics.catalogue import column
+from rectbench.metrics.catalogue import column, known
 from rectbench.plugins.figure import FigureData, Result, Sources
 from rectbench.reporting.pictures.pair_picture import PairPicture
 from rectbench.reporting.pictures.panels import attempted, fit_into_box, panel_grid, write_head, write_message
@@ -115,7 +115,7 @@ class Panel:
 def _panel(sources: Sources, result: Result, pair: StereoPair, marks: Shown) -> Panel:
     rect = sources.rectification(result)
     errors = [key for key in _ERRORS if key in result.metrics][:1]
-    keys = [*errors, *(key for key in ("log_distortion",) if key in result.metrics)]
+    keys = [*errors, *(key for key in (known().ranking.key,) if key in result.metrics)]
     note = ",  ".join(f"{column(k).heading} {_quantity(result.metrics[k], k)}" for k in keys)
     return Panel(note, *rect.remap(pair.left, pair.right), marks.moved(rect))
 

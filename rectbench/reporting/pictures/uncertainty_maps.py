@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
-from rectbench.metrics.uncertainty import Uncertainty
+from rectbench.metrics import Uncertainty
 from rectbench.reporting.pictures.panels import fit_into_box, panel_grid, write_head, write_message
 from rectbench.reporting.style import LOST, PAGE_INCHES, STYLE, encode
 from rectbench.reporting.tables.numbers import three_digits

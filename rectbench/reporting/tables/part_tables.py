@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rectbench.metrics.catalogue import DEPTH_KEYS, POSE_KEYS, ROW_KEYS, STAGES, column
 from rectbench.plugins.metric import Column
 from rectbench.reporting.asked import methods_part, wanted_figures
 from rectbench.reporting.charts.starts import SAME_MINIMUM, Starts, start_study, study_method
-from rectbench.reporting.names import named
+from rectbench.reporting.names import named, slug
 from rectbench.reporting.tables.claims_tables import claims_tables
 from rectbench.reporting.tables.labels import one_line, pair_labels
 from rectbench.reporting.tables.numbers import MISSING, three_digits
@@ -24,15 +23,16 @@ from rectbench.reporting.tables.tabulation import (
     heading,
     is_ranked,
     main_tables,
+    measured,
     methods_table,
     pair_tables,
     titled,
+    topic_columns,
 )
 from rectbench.runs.rows import Row
 from rectbench.runs.run import Run
 from rectbench.types import FloatArray
 
-ENERGY_KEYS = ("distortion_native", "energy_convex_share")
 _EXCESSES = {"least": 0.0, "median": 0.5, "largest": 1.0}
 _SAME_PLACE = 1e-6
 """A start that ends this little off another's L, relatively, ends in the same place."""
@@ -54,91 +54,106 @@ def all_tables(run: Run) -> Iterator[Table]:
 def _methods_tables(part: Run) -> Iterator[Table]:
     if is_ranked(part):
         yield from main_tables(part)
-        yield distortion_table(part)
-    if not part.has_truth and _measures(part, ROW_KEYS):
-        yield from photographs_row_tables(part)
-    elif part.group and _measures(part, ROW_KEYS):
-        yield rows_table(part)
-    if _measures(part, POSE_KEYS):
-        yield pose_table(part)
-    if _measures(part, DEPTH_KEYS):
-        yield depth_table(part)
-    if "energy_convex_share" in part.metrics:
-        yield energy_table(part)
-    if "timing" in wanted_figures(part) and _measures(part, tuple(STAGES)):
-        yield timing_table(part)
+    for topic in part.catalogue.topics:
+        yield from _topic_tables(part, topic)
     yield from pair_tables(part)
 
 
-def _measures(run: Run, keys: Sequence[str]) -> bool:
-    return any(key in run.metrics for key in keys)
+def _topic_tables(part: Run, topic: str) -> Iterator[Table]:
+    columns = topic_columns(part, topic)
+    if topic == "Distortion":
+        yield from [distortion_table(part)] if is_ranked(part) else []
+    elif topic == "Poses":
+        yield from [pose_table(part)] if columns else []
+    elif topic == "Time":
+        yield from [timing_table(part)] if "timing" in wanted_figures(part) and columns else []
+    elif any(column.shown == "topic" for column in columns) and (
+        # In a run without parts the main table speaks of it, if of few of its columns.
+        part.group or not part.has_truth or all(column.shown == "topic" for column in columns)
+    ):
+        yield from pairwise_tables(part, topic)
 
 
-def rows_table(run: Run) -> Table:
-    """Row error in the images and against the truth, over all pairs and on each."""
-    return replace(
-        _by_pair(run, ROW_KEYS, run.noisy_poses[0]),
-        kind="rows",
-        name=named(run, "row-error"),
-        title=titled(run, "Row error"),
-        caption="Of SIFT matches within 3 px of the pose's epipolar planes, and of true correspondences; "
-        f"{run.noisy_poses[0]} pose, averages over seeds.",
-    )
+@dataclass(frozen=True)
+class _Wording:
+    """How the table of a topic is called, and what stands below its title."""
+
+    kind: str
+    stem: str
+    title: str
+    caption: str
+    of_photographs: str = ""
+    beside: tuple[str, ...] = ()
+    """Columns of other topics that it shows as well."""
 
 
-def photographs_row_tables(run: Run) -> Iterator[Table]:
-    """Row error under each pose, of what was found in the images, over all pairs and on each."""
-    for pose in run.poses:
+_WORDINGS = {
+    "Row error": _Wording(
+        "rows",
+        "row-error",
+        "Row error",
+        "Of SIFT matches within 3 px of the pose's epipolar planes, and of true correspondences; {pose} "
+        "pose, averages over seeds.",
+        "Of the corners of a calibration board, the measure to trust, where both images show one; and of "
+        "SIFT matches that agree with one another on the pose in the images, whatever the calibration says.",
+    ),
+    "Reconstruction": _Wording(
+        "depth",
+        "reconstruction",
+        "Reconstruction",
+        "Depth from dense matching on the rectified pair, counted at the pixels of the left source image "
+        "that both cameras see; what gets no depth counts as bad.",
+    ),
+    "Energy": _Wording(
+        "energy",
+        "energy",
+        "The energy about the fit",
+        "The least L, and the share of its slices over two coefficients on which it is convex.",
+        beside=("distortion_native",),
+    ),
+}
+
+
+def pairwise_tables(run: Run, topic: str) -> Iterator[Table]:
+    """A topic's columns over all pairs and on each; of photographs a table a pose.
+
+    Methods that were measured, and have no number of the topic anywhere, are left out: it is not about them.
+    """
+    usual = _Wording(slug(topic), slug(topic), topic, "{pose} pose, averages over seeds.")
+    wording = _WORDINGS.get(topic, usual)
+    own = {column.key for column in run.catalogue.topics[topic]}
+    unmeasured = {r.method for r in run.results if r.ok} - {
+        r.method for r in run.results if own & r.metrics.keys()
+    }
+    about = run.only(r for r in run.results if r.method not in unmeasured)
+    columns = [*measured(about, map(run.catalogue.column, wording.beside)), *topic_columns(about, topic)]
+    for pose in run.noisy_poses[:1] if run.has_truth else run.poses:
+        caption = wording.caption if run.has_truth else wording.of_photographs or wording.caption
         yield replace(
-            _by_pair(run, ROW_KEYS, pose),
-            kind="rows",
-            name=named(run, "row-error", pose),
-            title=titled(run, f"Row error under the {pose} pose"),
-            caption="Of the corners of a calibration board, the measure to trust, where both images show "
-            "one; and of SIFT matches that agree with one another on the pose in the images, whatever the "
-            "calibration says.",
+            methods_table(about, columns, _by_pair(about, pose)),
+            kind=wording.kind,
+            name=named(run, wording.stem, "" if run.has_truth else pose),
+            title=titled(run, wording.title + ("" if run.has_truth else f" under the {pose} pose")),
+            caption=caption.format(pose=pose),
         )
 
 
-def depth_table(run: Run) -> Table:
-    """Dense matching through each method's rectification, over all pairs and on each."""
-    return replace(
-        _by_pair(run, DEPTH_KEYS, run.noisy_poses[0]),
-        kind="depth",
-        name=named(run, "reconstruction"),
-        title=titled(run, "Reconstruction"),
-        caption="Depth from dense matching on the rectified pair, counted at the pixels of the left source "
-        "image that both cameras see; what gets no depth counts as bad.",
-    )
-
-
-def energy_table(run: Run) -> Table:
-    """How convex the energy is about each fit, of the methods that have one."""
-    with_energy = run.only(r for r in run.results if "energy_convex_share" in r.metrics)
-    return replace(
-        _by_pair(with_energy, ENERGY_KEYS, run.noisy_poses[0]),
-        kind="energy",
-        name=named(run, "energy"),
-        title=titled(run, "The energy about the fit"),
-        caption="The least L, and the share of its slices over two coefficients on which it is convex.",
-    )
-
-
-def _by_pair(run: Run, keys: Sequence[str], pose: str) -> Table:
+def _by_pair(run: Run, pose: str) -> dict[str, tuple[Row, ...]]:
     results, labels = run.select(pose=pose), pair_labels(run)
     by_pair = {one_line(label): run.select(results, place=place) for place, label in labels.items()}
-    return methods_table(run, keys, {"all pairs": results, **by_pair} if len(labels) > 1 else by_pair)
+    return {"all pairs": results, **by_pair} if len(labels) > 1 else by_pair
 
 
 def pose_table(run: Run) -> Table:
     """The estimated poses, a row a pair; all methods of a pair share them."""
-    keys = [key for key in POSE_KEYS if key in run.metrics]
+    columns = topic_columns(run, "Poses")
+    keys = [column.key for column in columns]
     rows = [
-        _pose_row(one_line(label), _poses(run.select(place=place), keys), keys, np.mean)
+        _pose_row(one_line(label), _poses(run.select(place=place), keys), columns, np.mean)
         for place, label in pair_labels(run).items()
     ]
     if len(rows) > 1:
-        rows.append(_pose_row("median", _poses(run.results, keys), keys, np.median))
+        rows.append(_pose_row("median", _poses(run.results, keys), columns, np.median))
     return Table(
         kind="pose",
         part=run.group,
@@ -149,7 +164,7 @@ def pose_table(run: Run) -> Table:
         headings=(
             Heading("pair", "pair", numeric=False),
             Heading("poses", "poses", meaning="How many were estimated."),
-            *map(heading, keys),
+            *map(heading, columns),
         ),
         sections=(Section("", tuple(rows)),),
     )
@@ -162,23 +177,23 @@ def _poses(results: Sequence[Row], keys: Sequence[str]) -> list[list[float]]:
 
 
 def _pose_row(
-    label: str, poses: list[list[float]], keys: Sequence[str], average: Callable[..., FloatArray]
+    label: str, poses: list[list[float]], columns: Sequence[Column], average: Callable[..., FloatArray]
 ) -> tuple[Entry, ...]:
-    values = average(np.array(poses), axis=0).tolist() if poses else [None] * len(keys)
+    values = average(np.array(poses), axis=0).tolist() if poses else [None] * len(columns)
     count = Entry(str(len(poses)), float(len(poses)), failed=not poses)
-    return Entry(label, label), count, *map(number, values, map(column, keys))
+    return Entry(label, label), count, *map(number, values, columns)
 
 
 def timing_table(run: Run) -> Table:
     """Seconds of each stage beside those somebody else stated."""
-    stages = [key for key in STAGES if key in run.metrics]
+    stages = {key: name for key, name in run.catalogue.panels("Time").items() if key in run.metrics}
     stated = run.stated_seconds
     sections = []
     for rig in run.rigs:
         rows = [_timing_row(run.select(rig=rig, method=m), m, stages) for m in run.methods]
         if stated:
             times = {**stated, "total": sum(stated.values())}
-            rows.append((words("as stated"), *(_seconds(times.get(STAGES[key])) for key in stages)))
+            rows.append((words("as stated"), *(_seconds(times.get(name)) for name in stages.values())))
         sections.append(Section(rig, tuple(rows)))
     return Table(
         kind="time",
@@ -188,13 +203,16 @@ def timing_table(run: Run) -> Table:
         caption="Seconds a pair, averages over its runs; tables are part of the warp.",
         headings=(
             Heading("method", "method", numeric=False),
-            *(Heading(f"{STAGES[key]} [s]", key, meaning=column(key).meaning) for key in stages),
+            *(
+                Heading(f"{name} [s]", key, meaning=run.catalogue.column(key).meaning)
+                for key, name in stages.items()
+            ),
         ),
         sections=tuple(sections),
     )
 
 
-def _timing_row(results: Sequence[Row], method: str, stages: Sequence[str]) -> tuple[Entry, ...]:
+def _timing_row(results: Sequence[Row], method: str, stages: Iterable[str]) -> tuple[Entry, ...]:
     found = [[r.metrics[key] for r in results if key in r.metrics] for key in stages]
     return words(method), *(_seconds(sum(values) / len(values) if values else None) for values in found)
 

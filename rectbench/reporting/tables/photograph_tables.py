@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from rectbench.metrics.catalogue import column
 from rectbench.reporting.tables.labels import one_line, pair_labels
 from rectbench.reporting.tables.numbers import MISSING
 from rectbench.reporting.tables.table import Heading, Section, Table, number, words
+from rectbench.reporting.tables.tabulation import heading, measured
 from rectbench.runs.record import FoundPhotographs
 from rectbench.runs.run import Run
 
@@ -29,13 +29,16 @@ def photograph_tables(run: Run) -> Iterator[Table]:
 
 def _pairs_table(run: Run, found: FoundPhotographs) -> Table:
     files = {(pair.name, pair.rig): pair for pair in found.pairs}
-    keys = [key for key in COUNTED if key in run.metrics]
+    columns = measured(run, map(run.catalogue.column, COUNTED))
     rows = []
     for place, label in pair_labels(run).items():
         results = run.select(place=place)
         told = {name: str(text) for r in results for name, text in r.notes.items()}
         # A method that shows less of the view has fewer of them to be measured by.
-        counts = [max((r.metrics[key] for r in results if key in r.metrics), default=None) for key in keys]
+        counts = [
+            max((r.metrics[column.key] for r in results if column.key in r.metrics), default=None)
+            for column in columns
+        ]
         pair = files[place[0], place[1]]
         said = [*(told[name] for name in TROUBLE if name in told), *found.remarks.get(place[1], ())]
         rows.append(
@@ -43,7 +46,7 @@ def _pairs_table(run: Run, found: FoundPhotographs) -> Table:
                 words(one_line(label)),
                 words(pair.left),
                 words(pair.right),
-                *(number(count, column(key)) for count, key in zip(counts, keys, strict=True)),
+                *map(number, counts, columns),
                 words(told.get("board", MISSING)),
                 words("; ".join(said)),
             )
@@ -58,7 +61,7 @@ def _pairs_table(run: Run, found: FoundPhotographs) -> Table:
             Heading("pair", "pair", numeric=False),
             Heading("left", "left", numeric=False),
             Heading("right", "right", numeric=False),
-            *(Heading(column(key).heading, key, meaning=column(key).meaning) for key in keys),
+            *map(heading, columns),
             Heading("board", "board", numeric=False),
             Heading("remarks", "remarks", numeric=False, wraps=True),
         ),

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from rectbench.metrics.catalogue import RANKING_KEY, column
-from rectbench.plugins.metric import Column
+from rectbench.plugins.metric import Average, Column
 from rectbench.runs.rows import Row
+from rectbench.types import FloatArray
 
 
 @dataclass(frozen=True)
@@ -41,15 +41,15 @@ class Summary:
         return self.failed == 0
 
 
-def summarise(method: str, results: Sequence[Row], keys: Iterable[str]) -> Summary:
-    """Average the `keys` over the ok cells of `results`, each key as its column says."""
+def summarise(method: str, results: Sequence[Row], columns: Iterable[Column]) -> Summary:
+    """Average the `columns` over the ok cells of `results`, each as it says."""
     ok = [r for r in results if r.ok]
-    averages = {key: _average(column(key), [r.metrics[key] for r in ok if key in r.metrics]) for key in keys}
+    averages = {c.key: _average(c, [r.metrics[c.key] for r in ok if c.key in r.metrics]) for c in columns}
     return Summary(method, len(results), len(ok), averages)
 
 
-def ranked(summaries: Iterable[Summary], key: str = RANKING_KEY) -> list[Summary]:
-    """Best first by `key`. A failed cell counts before any average: fewer failures rank higher."""
+def ranked(summaries: Iterable[Summary], key: str) -> list[Summary]:
+    """Best first by the column `key`. A failed cell counts before any average: fewer failures rank higher."""
     return sorted(summaries, key=lambda s: (s.failed, _or_infinity(s.averages.get(key)), s.method))
 
 
@@ -61,12 +61,12 @@ def _average(shown_as: Column, values: Sequence[float]) -> Averaged:
     if not values:
         return Averaged(None, 0)
     array = np.asarray(values, dtype=np.float64)
-    if shown_as.average == "max":
-        value = array.max()
-    elif shown_as.average == "min":
-        value = array.min()
-    elif shown_as.average == "rms":
-        value = np.sqrt(np.mean(array**2))
-    else:
-        value = np.mean(array)
-    return Averaged(float(value), len(values))
+    return Averaged(float(_AVERAGES[shown_as.average](array)), len(values))
+
+
+_AVERAGES: dict[Average, Callable[[FloatArray], float]] = {
+    "mean": np.mean,
+    "rms": lambda values: np.sqrt(np.mean(values**2)),
+    "max": np.max,
+    "min": np.min,
+}

@@ -9,8 +9,13 @@ import csv
 import io
 import re
 import textwrap
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
+
+from jinja2 import Environment, PackageLoader, Template
+from pylatexenc.latexencode import RULE_REGEX, UnicodeToLatexConversionRule, UnicodeToLatexEncoder
+from tabulate import tabulate
 
 from rectbench.plugins.metric import Column
 from rectbench.reporting.tables.numbers import MISSING, shown
@@ -124,106 +129,15 @@ def to_csv(table: Table) -> str:
 
 def to_markdown(table: Table) -> str:
     """A pipe table a section, best values bold."""
-    head = _pipe_row([_escape_markdown(heading.text) for heading in table.headings])
-    rule = _pipe_row(["---:" if heading.numeric else ":---" for heading in table.headings])
+    headings = [_escape_markdown(heading.text) for heading in table.headings]
+    sides = ["right" if heading.numeric else "left" for heading in table.headings]
     lines = [f"**{_escape_markdown(table.title)}.** {_escape_markdown(table.caption)}", ""]
     for section in table.sections:
         lines += [f"*{_escape_markdown(section.title)}*", ""] if section.title else []
-        lines += [
-            head,
-            rule,
-            *(_pipe_row([_markdown_entry(entry) for entry in row]) for row in section.rows),
-            "",
-        ]
+        rows = [[_markdown_entry(entry) for entry in row] for row in section.rows]
+        lines += [tabulate(rows, headings, "pipe", colalign=sides, disable_numparse=True), ""]
     lines += [line for note in table.notes for line in (_escape_markdown(note), "")]
     return "\n".join(lines)
-
-
-def to_latex(table: Table) -> str:
-    r"""A `table*` for `\usepackage{booktabs,graphicx}`, shrunk to the text's width where it is wider.
-
-    One of more rows than a page holds is a `longtable`, for a document of one column.
-    """
-    if len(table.rows) > _PAGE_ROWS:
-        return _long_latex(table)
-    alignment = "".join(map(_latex_alignment, table.headings))
-    lines = [
-        "% needs \\usepackage{booktabs,graphicx}",
-        "\\begin{table*}[t]",
-        "\\centering\\small\\setlength{\\tabcolsep}{3.5pt}",
-        f"\\caption{{{escape_latex(f'{table.title}. {table.caption}')}}}",
-        f"\\label{{tab:{table.name}}}",
-        "\\resizebox{\\ifdim\\width>\\textwidth\\textwidth\\else\\width\\fi}{!}{%",
-        f"\\begin{{tabular}}{{{alignment}}}",
-        "\\toprule",
-        _latex_head(table),
-        *_latex_sections(table),
-        "\\bottomrule",
-        "\\end{tabular}}",
-        *_latex_notes(table),
-        "\\end{table*}",
-    ]
-    return "\n".join([*lines, ""])
-
-
-def _long_latex(table: Table) -> str:
-    """A small table that runs over pages, the heading on each; columns of many words wrap."""
-    columns = zip(*table.rows, strict=True)
-    wide = [max(len(entry.text) for entry in column) > _WIDE_LETTERS for column in columns]
-    paragraph = f"p{{{0.45 / max(1, sum(wide)):.2f}\\textwidth}}"
-    alignment = "".join(
-        paragraph if is_wide else _latex_alignment(heading)
-        for is_wide, heading in zip(wide, table.headings, strict=True)
-    )
-    lines = [
-        "% needs \\usepackage{booktabs,longtable}, and one column",
-        "\\begingroup",
-        "\\footnotesize\\setlength{\\tabcolsep}{3.5pt}\\setlength{\\LTcapwidth}{\\textwidth}",
-        f"\\begin{{longtable}}{{{alignment}}}",
-        f"\\caption{{{escape_latex(f'{table.title}. {table.caption}')}}}",
-        f"\\label{{tab:{table.name}}} \\tabularnewline",
-        "\\toprule",
-        _latex_head(table),
-        "\\endfirsthead",
-        _latex_head(table),
-        "\\midrule",
-        "\\endhead",
-        *_latex_sections(table),
-        "\\bottomrule",
-        "\\end{longtable}",
-        *_latex_notes(table),
-        "\\endgroup",
-    ]
-    return "\n".join([*lines, ""])
-
-
-def _latex_head(table: Table) -> str:
-    return _latex_row([_latex_heading(heading) for heading in table.headings])
-
-
-def _latex_sections(table: Table) -> Iterator[str]:
-    for section in table.sections:
-        yield "\\midrule"
-        if section.title:
-            title = f"\\emph{{{escape_latex(section.title)}}}"
-            yield f"\\multicolumn{{{len(table.headings)}}}{{l}}{{{title}}} \\\\"
-        yield from (_latex_row([_latex_entry(entry) for entry in row]) for row in section.rows)
-
-
-def _latex_notes(table: Table) -> list[str]:
-    return [f"\\par\\smallskip{{\\footnotesize {escape_latex(note)}\\par}}" for note in table.notes]
-
-
-_PAGE_ROWS = 45
-_WIDE_LETTERS = 24
-_HEADING_CHARACTERS = 10
-
-SPELLINGS = {"csv": to_csv, "md": to_markdown, "tex": to_latex}
-"""File extension to writer."""
-
-
-def _pipe_row(fields: Sequence[str]) -> str:
-    return f"| {' | '.join(fields)} |"
 
 
 def _markdown_entry(entry: Entry) -> str:
@@ -236,21 +150,51 @@ def _escape_markdown(text: str) -> str:
     return escaped.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
 
 
+def to_latex(table: Table) -> str:
+    r"""A `table*` for `\usepackage{booktabs,graphicx}`, shrunk to the text's width where it is wider.
+
+    One of more rows than a page holds is a `longtable`, for a document of one column; columns of many
+    words wrap in it.
+    """
+    is_long = len(table.rows) > _PAGE_ROWS
+    columns = zip(*table.rows, strict=True) if is_long else [()] * len(table.headings)
+    wide = [max((len(entry.text) for entry in column), default=0) > _WIDE_LETTERS for column in columns]
+    paragraph = f"p{{{0.45 / max(1, sum(wide)):.2f}\\textwidth}}"
+    alignment = "".join(
+        paragraph if is_wide else _latex_alignment(heading)
+        for is_wide, heading in zip(wide, table.headings, strict=True)
+    )
+    return _latex_template().render(table=table, is_long=is_long, alignment=alignment)
+
+
+@cache
+def _latex_template() -> Template:
+    loader = PackageLoader("rectbench.reporting")
+    environment = Environment("<%", "%>", "<<", ">>", trim_blocks=True, lstrip_blocks=True, loader=loader)
+    environment.filters |= {"tex": escape_latex, "head": _latex_heading, "field": _latex_entry}
+    return environment.get_template("table.tex.j2")
+
+
+_PAGE_ROWS = 45
+_WIDE_LETTERS = 24
+_HEADING_CHARACTERS = 10
+
+SPELLINGS = {"csv": to_csv, "md": to_markdown, "tex": to_latex}
+"""File extension to writer."""
+
+
 def _latex_alignment(heading: Heading) -> str:
     if heading.wraps:
         return "p{0.3\\textwidth}"
     return "r" if heading.numeric else "l"
 
 
-def _latex_row(fields: Sequence[str]) -> str:
-    return f"{' & '.join(fields)} \\\\"
-
-
 def _latex_entry(entry: Entry) -> str:
     text = escape_latex(entry.text)
     if not entry.best:
         return text
-    return f"\\textbf{{\\boldmath {text}}}" if "$" in text else f"\\textbf{{{text}}}"
+    has_math = "$" in text or "ensuremath" in text
+    return f"\\textbf{{\\boldmath {text}}}" if has_math else f"\\textbf{{{text}}}"
 
 
 def _latex_heading(heading: Heading) -> str:
@@ -262,58 +206,32 @@ def _latex_heading(heading: Heading) -> str:
     return f"\\shortstack[r]{{{stacked}}}"
 
 
-_LATEX = {
-    "\\": r"\textbackslash{}",
-    "{": r"\{",
-    "}": r"\}",
-    "&": r"\&",
-    "%": r"\%",
-    "$": r"\$",
-    "#": r"\#",
-    "_": r"\_",
-    "~": r"\textasciitilde{}",
-    "^": r"\textasciicircum{}",
-    "<": "$<$",
-    ">": "$>$",
-    "[": "{[}",
-    "]": "{]}",
-    "–": "--",
-    "−": "$-$",
-    "×": r"$\times$",
-    "≤": r"$\leq$",
-    "≥": r"$\geq$",
-    "σ": r"$\sigma$",
-    "û": r"$\hat{u}$",
-    "β": r"$\beta$",
-    "γ": r"$\gamma$",
-    "∂": r"$\partial$",
-    "\u0302": "",
-    "²": "$^2$",
-    "∞": r"$\infty$",
-    "°": r"$^\circ$",
-    "±": r"$\pm$",
-    "Ψ": r"$\Psi$",
-    "→": r"$\rightarrow$",
-    "↓": r"$\downarrow$",
-    "↑": r"$\uparrow$",
-    "·": r"$\cdot$",
-    "†": r"$\dagger$",
-}
-_POWER = re.compile(r"10([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)")
 _DIGITS = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
+_IN_MATH = {"−": "-", "→": r"\rightarrow", "↓": r"\downarrow", "↑": r"\uparrow", "×": r"\times"}
+_TO_LATEX = UnicodeToLatexEncoder(
+    conversion_rules=[
+        UnicodeToLatexConversionRule(
+            RULE_REGEX,
+            [
+                (re.compile("10([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)"), lambda m: f"$10^{{{m[1].translate(_DIGITS)}}}$"),
+                (re.compile("[<>−→↓↑×]"), lambda m: f"${_IN_MATH.get(m[0], m[0])}$"),
+                (re.compile("–"), "--"),
+                (re.compile("(û)|v\u0302"), lambda m: rf"$\hat{{{'u' if m[1] else 'v'}}}$"),
+                (re.compile(r"[\[\]]"), lambda m: f"{{{m[0]}}}"),  # after a row's end it would be an option
+            ],
+        ),
+        "defaults",
+    ],
+    unknown_char_policy="keep",
+    unknown_char_warning=False,
+)
 
 
 def escape_latex(text: str) -> str:
-    """Plain text as LaTeX: special characters escaped, powers of ten and symbols in math."""
-    pieces = []
-    position = 0
-    text = " ".join(text.split())
-    for power in _POWER.finditer(text):
-        pieces.append(_escape_characters(text[position : power.start()]))
-        pieces.append(f"$10^{{{power[1].translate(_DIGITS)}}}$")
-        position = power.end()
-    return "".join([*pieces, _escape_characters(text[position:])])
+    r"""Plain text as LaTeX: special characters escaped, powers of ten and symbols in math.
 
-
-def _escape_characters(text: str) -> str:
-    return "".join(_LATEX.get(character, character) for character in text)
+    >>> print(escape_latex("a_b < 10⁻⁶"))
+    a\_b $<$ $10^{-6}$
+    """
+    latex: str = _TO_LATEX.unicode_to_latex(" ".join(text.split()))
+    return latex

@@ -6,19 +6,11 @@ A report of several parts has them for each part, under names that hold the part
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from itertools import product
 from typing import Any
 
-from rectbench.metrics.catalogue import (
-    ALL_PIXELS_KEYS,
-    DISTORTION_KEYS,
-    MAIN_KEYS,
-    PHOTOGRAPH_KEYS,
-    RANKING_KEY,
-    column,
-)
 from rectbench.plugins.metric import Column
 from rectbench.reporting.asked import methods_part, part_title
 from rectbench.reporting.names import named
@@ -49,38 +41,31 @@ def main_tables(run: Run) -> list[Table]:
 
 def is_ranked(run: Run) -> bool:
     """Whether there is anything to rank methods by, or nothing at all to show but their failure."""
-    return not run.group or RANKING_KEY in run.metrics or not run.metrics
+    return not run.group or run.catalogue.ranking.key in run.metrics or not run.metrics
 
 
 def _main_table(run: Run, pose: str) -> Table:
-    results = run.select(pose=pose)
-    shown = MAIN_KEYS if run.has_truth else PHOTOGRAPH_KEYS
-    keys = [key for key in shown if key in run.metrics]
-    methods = [m for m in run.methods if any(r.method == m for r in results)]
-    summaries = ranked(summarise(m, [r for r in results if r.method == m], keys) for m in methods)
-    failing = any(not s.complete for s in summaries)
-    headings = [
-        Heading("rank", "rank", meaning=f"By {column(RANKING_KEY).heading}; failures count before it.")
+    results, ranking = run.select(pose=pose), run.catalogue.ranking
+    columns = [
+        column
+        for column in measured(run, run.catalogue.shown("summary", "page"))
+        if not (run.has_truth and column.without_truth)
     ]
+    summaries = ranked(_summaries(run, results, columns), ranking.key)
+    failing = any(not s.complete for s in summaries)
+    headings = [Heading("rank", "rank", meaning=f"By {ranking.heading}; failures count before it.")]
     headings += [Heading("method", "method", numeric=False), OK_HEADING]
-    headings += [heading(key) for key in keys] + [NOT_OK_HEADING] * failing
+    headings += [*map(heading, columns), *[NOT_OK_HEADING] * failing]
     ranks = [
-        Entry(str(i), i) if s.averages.get(RANKING_KEY) and s.ok else Entry(MISSING)
+        Entry(str(i), i) if s.averages.get(ranking.key) and s.ok else Entry(MISSING)
         for i, s in enumerate(summaries, 1)
     ]
-    fields = [_averaged_field(summaries, key) for key in keys]
     rows = tuple(
-        (
-            ranks[i],
-            Entry(s.method, s.method),
-            _ok_entry(s),
-            *(f[i] for f in fields),
-            *[_not_ok_entry(s, results)] * failing,
-        )
-        for i, s in enumerate(summaries)
+        (rank, *row)
+        for rank, row in zip(ranks, _method_rows(summaries, columns, results, failing), strict=True)
     )
     pairs = _pairs_text(results) if run.has_truth else _photographs_text(results)
-    caption = f"Averages over {pairs}, ranked by log distortion."
+    caption = f"Averages over {pairs}, ranked by {ranking.heading}."
     return Table(
         kind="main",
         part=run.group,
@@ -100,8 +85,7 @@ def distortion_table(run: Run) -> Table:
         f"{rig}, {motion}" if len(run.motions) > 1 else rig: run.select(results, rig=rig, motion=motion)
         for rig, motion in product(run.rigs, run.motions)
     }
-    keys = (*DISTORTION_KEYS, *ALL_PIXELS_KEYS) if run.group else DISTORTION_KEYS
-    table = methods_table(run, keys, sections)
+    table = methods_table(run, topic_columns(run, "Distortion"), sections)
     return replace(
         table,
         kind="distortion",
@@ -114,9 +98,18 @@ def distortion_table(run: Run) -> Table:
     )
 
 
-def methods_table(run: Run, keys: Sequence[str], sections: Mapping[str, Sequence[Row]]) -> Table:
-    """Averages of the `keys` that the run has, a row a method, in a section of results each."""
-    keys = [key for key in keys if key in run.metrics]
+def measured(run: Run, columns: Iterable[Column]) -> list[Column]:
+    """Those of the columns that the run has."""
+    return [column for column in columns if column.key in run.metrics]
+
+
+def topic_columns(run: Run, topic: str) -> list[Column]:
+    """The measured columns that a topic's table shows."""
+    return measured(run, run.catalogue.shown("topic", "page", "summary", topic=topic))
+
+
+def methods_table(run: Run, columns: Sequence[Column], sections: Mapping[str, Sequence[Row]]) -> Table:
+    """Averages of the columns, a row a method, in a section of results each."""
     failing = any(not r.ok for results in sections.values() for r in results)
     return Table(
         name="",
@@ -125,11 +118,11 @@ def methods_table(run: Run, keys: Sequence[str], sections: Mapping[str, Sequence
         headings=(
             Heading("method", "method", numeric=False),
             OK_HEADING,
-            *(heading(key) for key in keys),
+            *map(heading, columns),
             *[NOT_OK_HEADING] * failing,
         ),
         sections=tuple(
-            Section(title, _method_rows(run, keys, results, failing))
+            Section(title, _method_rows(_summaries(run, results, columns), columns, results, failing))
             for title, results in sections.items()
             if results
         ),
@@ -138,15 +131,16 @@ def methods_table(run: Run, keys: Sequence[str], sections: Mapping[str, Sequence
     )
 
 
+def _summaries(run: Run, results: Sequence[Row], columns: Sequence[Column]) -> list[Summary]:
+    """Of the methods that any of the results is of, in the run's order."""
+    mine = {method: [r for r in results if r.method == method] for method in run.methods}
+    return [summarise(method, own, columns) for method, own in mine.items() if own]
+
+
 def _method_rows(
-    run: Run, keys: Sequence[str], results: Sequence[Row], failing: bool
+    summaries: Sequence[Summary], columns: Sequence[Column], results: Sequence[Row], failing: bool
 ) -> tuple[tuple[Entry, ...], ...]:
-    summaries = [
-        summarise(m, [r for r in results if r.method == m], keys)
-        for m in run.methods
-        if any(r.method == m for r in results)
-    ]
-    fields = [_averaged_field(summaries, key) for key in keys]
+    fields = [_averaged_field(summaries, column) for column in columns]
     return tuple(
         (
             Entry(s.method, s.method),
@@ -184,7 +178,7 @@ def _pair_table(run: Run, scene: str, rig: str, results: Sequence[Row]) -> Table
         parts += [f"seed {seed}"] if len({r.seed for r in run.results}) > 1 else []
         present = [cells.get(m) for m in methods]
         status = (Entry("status", "status"), *(_status_entry(r) for r in present))
-        rows = [_metric_row(column(key), present) for key in run.metrics]
+        rows = [_metric_row(run.catalogue.column(key), present) for key in run.metrics]
         notes = dict.fromkeys(name for r in present if r is not None for name in r.notes)
         rows += [_note_row(name, present) for name in notes]
         sections.append(Section(", ".join(parts), (status, *rows)))
@@ -251,9 +245,9 @@ def failures_table(run: Run) -> Table:
     )
 
 
-def heading(key: str) -> Heading:
-    shown_as = column(key)
-    return Heading(_head_text(shown_as), key, meaning=shown_as.meaning)
+def heading(shown_as: Column) -> Heading:
+    """What stands above a column, with an arrow towards the better values."""
+    return Heading(_head_text(shown_as), shown_as.key, meaning=shown_as.meaning)
 
 
 def _head_text(shown_as: Column) -> str:
@@ -272,17 +266,16 @@ def _not_ok_entry(summary: Summary, results: Sequence[Row]) -> Entry:
     return Entry(text or MISSING, text, failed=bool(text))
 
 
-def _averaged_field(summaries: Sequence[Summary], key: str) -> list[Entry]:
+def _averaged_field(summaries: Sequence[Summary], shown_as: Column) -> list[Entry]:
     """One metric down the methods. Averages over fewer cells than planned compete for no prize."""
-    shown_as = column(key)
     entries = []
     for summary in summaries:
-        averaged = summary.averages[key]
+        averaged = summary.averages[shown_as.key]
         short = averaged.count < summary.ok
         entries.append(
             number(averaged.value, shown_as, f" ({averaged.count}/{summary.cells})" if short else "")
         )
-    eligible = [s.complete and s.averages[key].count == s.cells for s in summaries]
+    eligible = [s.complete and s.averages[shown_as.key].count == s.cells for s in summaries]
     return with_best(entries, shown_as, eligible)
 
 

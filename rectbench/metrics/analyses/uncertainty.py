@@ -24,8 +24,8 @@ from numpy.typing import ArrayLike
 
 from rectbench.cameras.projection import as_points
 from rectbench.errors import InvalidInput
+from rectbench.metrics.analyses.propagation import GROUPS, Propagation
 from rectbench.metrics.coverage import dense_pixels
-from rectbench.metrics.propagation import GROUPS, Propagation
 from rectbench.rigs import Rig
 from rectbench.rigs.covariance import RigCovariance
 from rectbench.types import FloatArray
@@ -136,6 +136,13 @@ def uncertainty(
 
     Raises UnknownName for a parameter of the covariance that the rig has not, InvalidInput for a
     distance or noise that is none.
+
+    >>> import rectbench as rb
+    >>> rig = rb.load_rig("t265")
+    >>> unsure = rb.RigCovariance.from_sigmas(rig, rotation_deg=0.1)
+    >>> found = uncertainty(rb.rectify(rig, method="abraham"), rig, unsure, pixels=[[400.0, 380.0]])
+    >>> found.row_error_sigma_px.shape
+    (3, 1)
     """
     covariance.refuse_unknown(rig)
     depths = _checked_depths(depth_m, rig)

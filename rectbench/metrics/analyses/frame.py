@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from rectbench.metrics.coverage import coverage
-from rectbench.metrics.distortion import log_distortion
+from rectbench.metrics.log_distortion import log_distortion
 from rectbench.metrics.sampling import every_pixel
 from rectbench.rigs import Rig
 from rectbench.warps import Rectification, centre_resolution_px
@@ -19,6 +19,12 @@ def frame_costs(rect: Rectification, rig: Rig) -> dict[str, float]:
     - `coverage_pixels`, `coverage_solid_angle`, `coverage_overlap`, `valid_output`, see `coverage`.
     - `sampling_lost`, `sampling_invented`, see `every_pixel`.
     - `log_distortion_kept`: log distortion over the pixels that stay in the frame.
+
+    >>> import rectbench as rb
+    >>> rig = rb.load_rig("t265")
+    >>> costs = frame_costs(rb.rectify(rig, method="abraham"), rig)
+    >>> 0 < costs["coverage_pixels"] <= 1
+    True
     """
     focal = focal_px(rect)
     shares, sampled = coverage(rect, rig), every_pixel(rect)
