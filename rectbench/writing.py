@@ -6,7 +6,7 @@ import os
 import tempfile
 from pathlib import Path
 
-from rectbench.errors import Unavailable
+from rectbench.errors import InvalidInput, Unavailable
 
 
 def write_atomically(path: Path, content: str | bytes) -> None:
@@ -27,3 +27,10 @@ def write_atomically(path: Path, content: str | bytes) -> None:
         if unfinished:
             Path(unfinished).unlink(missing_ok=True)
         raise Unavailable(f"{path} cannot be written: {error.strerror or error}") from error
+
+
+def check_writable(folder: Path) -> None:
+    """Raise InvalidInput where a folder could not be written, before hours are spent on it."""
+    existing = next(path for path in (folder.absolute(), *folder.absolute().parents) if path.exists())
+    if not existing.is_dir() or not os.access(existing, os.W_OK | os.X_OK):
+        raise InvalidInput(f"{folder} cannot be written; expected a folder, or a place for one")

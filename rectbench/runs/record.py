@@ -23,6 +23,7 @@ from rectbench.experiments.tasks import IDENTITY
 from rectbench.pairs.finding.photographs import UNREADABLE
 from rectbench.store.closure import PACKAGE
 from rectbench.store.keys import canonical_json, versions
+from rectbench.writing import check_writable as check_writable
 
 RUN_FILE, PARQUET, CSV = "run.json", "results.parquet", "results.csv"
 LEADING = (*IDENTITY, "status", "reason")
@@ -129,13 +130,6 @@ def unreadable_images(folder: Path) -> list[str]:
     """The images of a run of photographs that could not be read; none of other runs."""
     photographs = read_facts(folder).get("photographs", {})
     return [out["path"] for out in photographs.get("left_out", ()) if out["reason"] == UNREADABLE]
-
-
-def check_writable(folder: Path) -> None:
-    """Raise InvalidInput where a run's folder could not be written, before hours are spent on it."""
-    existing = next(path for path in (folder.absolute(), *folder.absolute().parents) if path.exists())
-    if not existing.is_dir() or not os.access(existing, os.W_OK | os.X_OK):
-        raise InvalidInput(f"{folder} cannot be written; expected a folder, or a place for one")
 
 
 def write_run(folder: Path, table: pd.DataFrame, facts: Mapping[str, Any]) -> None:

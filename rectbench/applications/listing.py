@@ -1,0 +1,86 @@
+"""What `rectbench list` can list: names with a line about each, and plugins that cannot be loaded."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from pkgutil import resolve_name
+from typing import Any, NamedTuple
+
+from rectbench.errors import UnknownName
+
+LISTABLE = {
+    "methods": "rectbench.plugins.rectifier:METHODS",
+    "scenes": "rectbench.plugins.scene:SCENES",
+    "rigs": "rectbench.applications.listing:_rigs",
+    "motions": "rectbench.applications.listing:_motions",
+    "poses": "rectbench.applications.listing:_poses",
+    "reports": "rectbench.experiments.spec:REPORTS",
+    "formats": "rectbench.applications.listing:_formats",
+}
+"""Where each kind is: a `Kind` of plugins, or a function that gives entries. Imported when it is listed."""
+
+
+class Entry(NamedTuple):
+    """One thing with a name."""
+
+    name: str
+    summary: str
+    value: Any = None
+    """The plugin, of a kind of plugins."""
+
+
+@dataclass(frozen=True)
+class Listing:
+    """What there is of a kind."""
+
+    entries: tuple[Entry, ...]
+    broken: Mapping[str, str] = field(default_factory=dict)
+    """Why a plugin at a place cannot be loaded."""
+
+
+def listed(kind: str) -> Listing:
+    """All there is of a kind. Raises UnknownName for a kind that there is not."""
+    from rectbench.registry import Kind, registry
+
+    if kind not in LISTABLE:
+        raise UnknownName("kind", kind, LISTABLE)
+    source = resolve_name(LISTABLE[kind])
+    if not isinstance(source, Kind):
+        return Listing(tuple(source()))
+    found = registry(source)
+    entries = (Entry(plugin.name, plugin.summary, plugin.value) for plugin in found.plugins())
+    return Listing(tuple(entries), found.broken)
+
+
+def _rigs() -> Iterator[Entry]:
+    from rectbench.calibrations import load_rig, rig_names
+
+    for name in rig_names():
+        rig = load_rig(name)
+        size, baseline_mm = f"{rig.left.width}x{rig.left.height}", 1000 * rig.baseline_m
+        yield Entry(name, f"{rig.left.model}, {size}, baseline {baseline_mm:.0f} mm")
+
+
+def _motions() -> Iterator[Entry]:
+    from rectbench.rigs import MOTIONS
+
+    return (Entry(motion.name, motion.description) for motion in MOTIONS.values())
+
+
+def _poses() -> Iterator[Entry]:
+    from rectbench.experiments.spec import ESTIMATED
+    from rectbench.rigs import POSES
+
+    for name, noise in POSES.items():
+        rotation, direction = f"{noise.rotation_deg:g}°", f"{noise.direction_deg:g}°"
+        yield Entry(name, f"rotation off by {rotation}, baseline by {direction}")
+    yield Entry(ESTIMATED, "found in the images: features, five points, bundle adjustment")
+
+
+def _formats() -> Iterator[Entry]:
+    from rectbench.calibrations import calibration_formats, written_formats
+
+    words = {None: "", False: "; read and written", True: "; read and written, as a folder"}
+    in_folder = written_formats()
+    return (Entry(name, title + words[in_folder.get(name)]) for name, title in calibration_formats().items())
