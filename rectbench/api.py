@@ -1,4 +1,7 @@
-"""The verbs of `import rectbench as rb`: estimate a pose, rectify a rig, render or export, run a report."""
+"""The verbs of `import rectbench as rb`: estimate a pose, rectify a rig, render or export, run a report.
+
+Each fills the request that the command line fills too, see `applications.requests`. Imports all but cli.
+"""
 
 from __future__ import annotations
 
@@ -8,9 +11,9 @@ from typing import TYPE_CHECKING, Any
 
 from numpy.typing import ArrayLike
 
-from rectbench.applications import pose as _pose
-from rectbench.applications import rectify as _rectify
 from rectbench.applications.array_checks import checked_rig
+from rectbench.applications.estimate_pose import estimate_rig_pose
+from rectbench.applications.rectify_rig import rectify_rig
 from rectbench.applications.requests.photographs import PoseSettings, RectifyRequest
 from rectbench.applications.requests.rendering import ExportRequest, RenderRequest
 from rectbench.applications.requests.running import RunRequest
@@ -25,7 +28,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from rectbench.applications.export.dataset import Exported
-    from rectbench.applications.rectified_photographs import RectifiedImages
+    from rectbench.applications.photographs.rectified import RectifiedImages
     from rectbench.experiments.spec import Report
     from rectbench.images.stereo_pair import StereoPair
     from rectbench.rendering.truth import Truth
@@ -58,9 +61,17 @@ def rectify(
     Returns the rectification, see `Rectification`. Raises UnknownName for a method or option that
     does not exist; InvalidInput for an argument that cannot be used; Unsupported, with the reason,
     where the method cannot serve this rig; InvalidResult where a plugin's answer is no rectification.
+
+    >>> import rectbench as rb
+    >>> rig = rb.load_rig("sony-as200v").scaled(0.1)
+    >>> rect = rb.rectify(rig, "abraham", law="equisolid")
+    >>> rect.size
+    (131, 121)
+    >>> rect.left.forward([[80.0, 50.0]]).shape
+    (1, 2)
     """
     request = SeededMethodRequest(method=method, options=options, seed=seed)
-    return _rectify.rectify(checked_rig(rig), request, images=images, pixels=pixels, matches=matches)
+    return rectify_rig(checked_rig(rig), request, images=images, pixels=pixels, matches=matches)
 
 
 def rectify_images(
@@ -102,10 +113,21 @@ def rectify_images(
         cameras are meant, where the calibration does not tell.
     progress : a bar on stderr; where there are several pairs and a terminal by default.
 
-    Returns what was made; see `rectbench.applications.rectify_photographs` for the files, and for what
+    Returns what was made; see `rectbench.applications.photographs.rectify` for the files, and for what
     is raised.
+
+    >>> import tempfile, cv2, numpy as np, rectbench as rb
+    >>> rig, folder = rb.load_rig("sony-as200v").scaled(0.1), Path(tempfile.mkdtemp())
+    >>> width, height = rig.left.size
+    >>> for side in ("left", "right"):
+    ...     _ = cv2.imwrite(str(folder / f"{side}.png"), np.zeros((height, width, 3), np.uint8))
+    >>> made = rb.rectify_images(
+    ...     folder / "left.png", folder / "right.png", rig, folder / "out", tables=["npz"], measured_pairs=0
+    ... )
+    >>> made.method, (folder / "out" / "maps.npz").exists()
+    ('local-homography', True)
     """
-    from rectbench.applications.rectify_photographs import rectify_photographs
+    from rectbench.applications.photographs.rectify import rectify_photographs
 
     request = RectifyRequest(
         left=left,
@@ -153,11 +175,19 @@ def estimate_pose(
     contradicts the rig's own pose, as that of swapped images does. `estimate.rig(rig)` is the rig
     in that pose. Raises PoseNotFound, with the reason, where the images tell no pose: too few
     matches, none that agree, or a turn alone; InvalidInput for images that are not this rig's.
+
+    >>> import cv2, rectbench as rb
+    >>> rig = rb.load_rig("t265")
+    >>> images = [cv2.imread(f"{side}.png") for side in ("left", "right")]  # doctest: +SKIP
+    >>> rig = rb.estimate_pose(images, rig).rig(rig)  # doctest: +SKIP
+    >>> rb.estimate_pose([], rig, ratio=0)
+    Traceback (most recent call last):
+    rectbench.errors.InvalidInput: ratio is 0; expected a number above 0
     """
     settings = PoseSettings(
         detector=detector, ratio=ratio, farthest=farthest, working_pixels=working_pixels, seed=seed
     )
-    return _pose.estimate_pose(images, checked_rig(rig), settings)
+    return estimate_rig_pose(images, checked_rig(rig), settings)
 
 
 def render(
@@ -183,6 +213,13 @@ def render(
 
     Returns the images and the truth about them. Raises UnknownName, InvalidInput, or Unavailable
     where this machine cannot render.
+
+    >>> import rectbench as rb
+    >>> pair, truth = rb.render("street", "t265", seed=1, image_width=400)  # doctest: +SKIP
+    >>> px_left, px_right = truth.matches(4000)  # doctest: +SKIP
+    >>> rb.render("street", "t265", image_width=0)
+    Traceback (most recent call last):
+    rectbench.errors.InvalidInput: image_width is 0; expected a width in pixels
     """
     from rectbench.applications.render import render
 
@@ -220,6 +257,12 @@ def export_dataset(
     calibrations; `README.md`, which says what each file holds and how it is read, and `dataset.json`. See
     `rectbench.applications.export`. Raises UnknownName, InvalidInput (for a folder of another dataset, too),
     Unsupported where the method cannot serve the rig, Unavailable where this machine cannot render.
+
+    >>> import rectbench as rb
+    >>> made = rb.export_dataset("street", "t265", "dataset", seeds=[0, 1])  # doctest: +SKIP
+    >>> rb.export_dataset("street", "t265", "dataset", seeds=[])
+    Traceback (most recent call last):
+    rectbench.errors.InvalidInput: seeds are empty; expected whole numbers from 0 on, a pair each
     """
     from rectbench.applications.export.dataset import export_dataset
 
@@ -257,6 +300,12 @@ def run(
     A report of photographs, such as "real", takes them from the folder `data`.
 
     The arguments are those of `experiments.execution.running.run`. Returns the rows of `results.parquet`.
+
+    >>> import rectbench as rb
+    >>> table = rb.run("quick", methods=["+my_rectifier.py"], jobs=2)  # doctest: +SKIP
+    >>> rb.run("quick", jobs=0)
+    Traceback (most recent call last):
+    rectbench.errors.InvalidInput: jobs is 0; expected a whole number from 1 on
     """
     from rectbench.applications.run_report import run_report
 

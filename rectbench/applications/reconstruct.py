@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from rectbench.applications.calibrated import calibrated_pair
-from rectbench.applications.rectify import rectify
+from rectbench.applications.rectify_rig import rectify_rig
 from rectbench.applications.requests.photographs import ReconstructRequest
 from rectbench.matching import reconstruct
 from rectbench.matching.dense.matchers import matcher_named
@@ -20,7 +20,7 @@ def reconstruct_pair(request: ReconstructRequest) -> list[Path]:
     matcher_named(request.matcher)  # a wrong name is told before the work begins
     rig, images = calibrated_pair(request)
     found = reconstruct(
-        rectify(rig, request, images=images),
+        rectify_rig(rig, request, images=images),
         *images,
         request.matcher,
         pixels=request.pixels,

@@ -8,8 +8,8 @@ from typing import Any
 
 from rectbench import metrics
 from rectbench.applications.calibrated import rig_of
-from rectbench.applications.pose import estimate_pose
-from rectbench.applications.rectify import rectify
+from rectbench.applications.estimate_pose import estimate_rig_pose
+from rectbench.applications.rectify_rig import rectify_rig
 from rectbench.applications.requests.photographs import PoseSettings, UncertaintyRequest
 from rectbench.calibrations import load_covariance
 from rectbench.errors import InvalidInput
@@ -42,7 +42,7 @@ def propagate_uncertainty(request: UncertaintyRequest) -> PropagatedUncertainty:
     if request.left is not None and request.right is not None:
         images = read_images(request.left, request.right)
     rig, covariance = _believed(rig_of(request, images), images, request)
-    rect = rectify(rig, request, images=images)
+    rect = rectify_rig(rig, request, images=images)
     found = metrics.uncertainty(
         rect,
         rig,
@@ -61,7 +61,7 @@ def _believed(rig: Rig, images: Images | None, request: UncertaintyRequest) -> t
     sigmas: dict[str, Any] = request.sigmas
     parts = []
     if images is not None and not request.covariance and not POSE_SIZES & sigmas.keys():
-        estimate = estimate_pose(images, rig, PoseSettings(seed=request.seed))
+        estimate = estimate_rig_pose(images, rig, PoseSettings(seed=request.seed))
         if estimate.note:
             raise InvalidInput(f"{estimate.note}; expected images of the calibrated rig")
         rig = estimate.rig(rig)

@@ -9,10 +9,9 @@ from types import NoneType, UnionType
 from typing import Annotated, Any, TypeVar, Union, get_args, get_origin
 
 import typer
-from annotated_types import Ge
 from pydantic.fields import FieldInfo
 
-from rectbench.applications.requests.request import Flag, Positional, Request
+from rectbench.applications.requests.request import Request, Word
 from rectbench.errors import InvalidInput
 
 GOOD, FAILED, WRONG_USAGE, INCOMPLETE = 0, 1, 2, 3
@@ -47,18 +46,16 @@ def verb(request: type[R]) -> Callable[[Callable[[R], int]], Callable[..., None]
 def _parameters(request: type[Request]) -> Iterator[Parameter]:
     """What typer reads: a field is an option, but for those that have their place."""
     for name, field in request.model_fields.items():
-        flag = _flag(field)
-        least: Any = next((limit.ge for limit in field.metadata if isinstance(limit, Ge)), None)
-        if isinstance(flag, Positional):
-            info: Any = typer.Argument(metavar=flag.metavar, help=field.description)
-        else:
-            names = flag.names or (f"--{name.replace('_', '-')}",)
-            info = typer.Option(*names, metavar=flag.metavar, min=least, help=field.description)
+        word = _word(field)
+        least: Any = next((limit.ge for limit in field.metadata if hasattr(limit, "ge")), None)
+        info: Any = typer.Argument(metavar=word.metavar, help=field.description)
+        if not word.is_positional:
+            names = word.names or (f"--{name.replace('_', '-')}",)
+            info = typer.Option(*names, metavar=word.metavar, min=least, help=field.description)
         yield _parameter(name, _word_type(field), info, _default(field))
     for name, field in request.model_fields.items():
-        flag = _flag(field)
-        if isinstance(flag, Flag) and flag.takes_rest:
-            info = typer.Argument(metavar=flag.metavar, help=f"As --{name} {flag.metavar}.")
+        if (word := _word(field)).takes_rest:
+            info = typer.Argument(metavar=word.metavar, help=f"As --{name} {word.metavar}.")
             yield _parameter(REST, list[str], info, None)
 
 
@@ -67,8 +64,8 @@ def _parameter(name: str, kind: Any, info: Any, default: Any) -> Parameter:
     return Parameter(name, Parameter.KEYWORD_ONLY, default=default, annotation=Annotated[wanted, info])
 
 
-def _flag(field: FieldInfo) -> Flag | Positional:
-    return next((mark for mark in field.metadata if isinstance(mark, Flag | Positional)), Flag())
+def _word(field: FieldInfo) -> Word:
+    return next((mark for mark in field.metadata if isinstance(mark, Word)), Word())
 
 
 def _word_type(field: FieldInfo) -> Any:
@@ -76,8 +73,8 @@ def _word_type(field: FieldInfo) -> Any:
     is_union = get_origin(field.annotation) in (Union, UnionType)
     kinds = get_args(field.annotation) if is_union else (field.annotation,)
     kind, *others = [_bare(kind) for kind in kinds if kind is not NoneType]
-    flag = _flag(field)
-    if (isinstance(flag, Flag) and (flag.has_commas or flag.takes_rest)) or get_origin(kind) in (list, dict):
+    word = _word(field)
+    if word.has_commas or word.takes_rest or get_origin(kind) in (list, dict):
         return list[str]
     return kind if not others and kind in (bool, int, float, str, Path) else str
 
@@ -89,8 +86,7 @@ def _bare(kind: Any) -> Any:
 def _default(field: FieldInfo) -> Any:
     """As typer has it; of a calibration None, since the words at the end may have it."""
     if field.is_required():
-        flag = _flag(field)
-        return None if isinstance(flag, Flag) and flag.takes_rest else Parameter.empty
+        return None if _word(field).takes_rest else Parameter.empty
     if isinstance(field.default, list | tuple | dict):
         return [str(value) for value in field.default] or None
     return field.default
@@ -100,15 +96,15 @@ def _given(request: type[Request], words: dict[str, Any]) -> dict[str, Any]:
     """The fields that words are given for; the rest is for the request to fill."""
     given = {}
     for name, field in request.model_fields.items():
-        flag, value = _flag(field), words[name]
-        if isinstance(flag, Flag) and flag.takes_rest:
+        word, value = _word(field), words[name]
+        if word.takes_rest:
             value = [*(value or []), *(words[REST] or [])] or None
             if value is None and field.is_required():
-                flags = f"--{name} {flag.metavar}, or {flag.metavar} at the end"
+                flags = f"--{name} {word.metavar}, or {word.metavar} at the end"
                 raise InvalidInput(f"no {name} is given; expected {flags}")
         if value is None or value == _default(field):
             continue
-        if isinstance(flag, Flag) and flag.has_commas:
-            value = [part.strip() for word in value for part in word.split(",") if part.strip()]
+        if word.has_commas:
+            value = [part.strip() for text in value for part in text.split(",") if part.strip()]
         given[name] = value
     return given

@@ -19,7 +19,7 @@ def rectify(request: RectifyRequest) -> int:
     LEFT and RIGHT are two images, two folders, or two patterns such as 'left/*.png' in quotation marks.
     Exit code 3 where some of several pairs had to be left out.
     """
-    from rectbench.applications.rectify_photographs import rectify_photographs
+    from rectbench.applications.photographs.rectify import rectify_photographs
     from rectbench.cli.printing.rectified import show_rectified
 
     made = rectify_photographs(request)
@@ -35,11 +35,11 @@ def pose(request: PoseRequest) -> int:
     the estimate.
     """
     from rectbench.applications.calibrated import calibrated_pair
-    from rectbench.applications.pose import estimate_pose
+    from rectbench.applications.estimate_pose import estimate_rig_pose
     from rectbench.cli.printing.pose import show_pose
 
     rig, images = calibrated_pair(request)
-    estimate = estimate_pose(images, rig, request)
+    estimate = estimate_rig_pose(images, rig, request)
     show_pose(estimate, rig)
     if request.out is not None:
         estimate.rig(rig).save(request.out)

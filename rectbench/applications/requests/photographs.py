@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from rectbench.applications.requests.request import Flag, Positional, Request
+from rectbench.applications.requests.request import Request, Word, positional
 from rectbench.applications.requests.shared import (
     LeftImage,
     MethodSeed,
@@ -34,25 +34,25 @@ class FramingRequest(Request):
     crop: Annotated[
         Literal["valid"] | tuple[float, float, float, float] | None,
         BeforeValidator(crop_in),
-        Flag(metavar="valid|X,Y,W,H"),
+        Word(metavar="valid|X,Y,W,H"),
     ] = Field(
         None, description="Show the largest rectangle in which both images are valid, or one in pixels."
     )
     fov_deg: Annotated[
-        tuple[float, float] | None, BeforeValidator(angles_in), Flag(("--fov",), metavar="DEGxDEG")
+        tuple[float, float] | None, BeforeValidator(angles_in), Word(("--fov",), metavar="DEGxDEG")
     ] = Field(None, description="Show a field of view, across and down, degrees.")
-    coverage: Annotated[float | None, Flag(metavar="SHARE")] = Field(
+    coverage: Annotated[float | None, Word(metavar="SHARE")] = Field(
         None, description="Show this share of the source pixels, up to 1."
     )
-    size: Annotated[tuple[int, int] | None, BeforeValidator(size_in), Flag(metavar="WxH")] = Field(
+    size: Annotated[tuple[int, int] | None, BeforeValidator(size_in), Word(metavar="WxH")] = Field(
         None, description="Size of the rectified images, pixels."
     )
     focal_px: Annotated[
         float | Literal["source"] | None,
         BeforeValidator(focal_in),
-        Flag(("--focal",), metavar="PX|source"),
+        Word(("--focal",), metavar="PX|source"),
     ] = Field(None, description="Pixels per radian in the middle, or those of the source images there.")
-    pixels: Annotated[float | None, Flag(metavar="NUMBER")] = Field(
+    pixels: Annotated[float | None, Word(metavar="NUMBER")] = Field(
         None, description="Budget: a larger image is made smaller."
     )
 
@@ -60,15 +60,15 @@ class FramingRequest(Request):
 class RectifyRequest(FramingRequest, OptionsRequest, RigRequest):
     """Photographs to be rectified into a folder."""
 
-    left: Annotated[Text, Positional("LEFT"), Field(description="The left image, folder or pattern.")]
-    right: Annotated[Text, Positional("RIGHT"), Field(description="The right one.")]
-    rig: Annotated[Any, Flag(metavar="CALIB", takes_rest=True)] = Field(
+    left: Annotated[Text, positional("LEFT"), Field(description="The left image, folder or pattern.")]
+    right: Annotated[Text, positional("RIGHT"), Field(description="The right one.")]
+    rig: Annotated[Any, Word(metavar="CALIB", takes_rest=True)] = Field(
         None,
         description=f"{RigRequest.model_fields['rig'].description} "
         "Without one, methods that work from matches alone.",
     )
     out: Out = Field(Path("rectified"), description="Folder for what is made.")
-    method: Annotated[Text | None, Flag(("--method", "-m"))] = Field(
+    method: Annotated[Text | None, Word(("--method", "-m"))] = Field(
         None,
         description="A method's name, or a file; or best: all that apply are measured, each showing "
         "--coverage of the source pixels (95 % where not given), and the least log distortion is chosen. "
@@ -76,11 +76,11 @@ class RectifyRequest(FramingRequest, OptionsRequest, RigRequest):
     )
     seed: MethodSeed = 0
     antialias: bool = Field(False, description="Average over a pixel's footprint where the image shrinks.")
-    tables: Annotated[tuple[str, ...], _TABLES, Flag(metavar="KINDS", has_commas=True)] = Field(
+    tables: Annotated[tuple[str, ...], _TABLES, Word(metavar="KINDS", has_commas=True)] = Field(
         ("npz", "opencv", "fixed"),
         description="Lookup tables: npz, opencv, fixed, separated by commas; or none.",
     )
-    measured_pairs: Annotated[int, Flag(("--measure",), metavar="PAIRS")] = Field(
+    measured_pairs: Annotated[int, Word(("--measure",), metavar="PAIRS")] = Field(
         5, ge=0, description="Measure the rows of so many pairs, spread over all."
     )
 
@@ -115,7 +115,7 @@ class PoseRequest(PoseSettings, RigRequest):
 
     left: LeftImage
     right: RightImage
-    out: Annotated[Path | None, Flag(("--out", "-o"), metavar="FILE")] = Field(
+    out: Annotated[Path | None, Word(("--out", "-o"), metavar="FILE")] = Field(
         None, description="Write the rig in this pose as YAML."
     )
 
@@ -136,9 +136,9 @@ class ReconstructRequest(SeededMethodRequest, RigRequest):
 class UncertaintyRequest(SeededMethodRequest, SizedRigRequest):
     """A calibration, and how sure it is: of a file, by sizes, or from two images."""
 
-    left: Annotated[Path | None, Positional("LEFT")] = Field(None, description="The left image.")
-    right: Annotated[Path | None, Positional("RIGHT")] = Field(None, description="The right image.")
-    covariance: Annotated[list[str], Flag(metavar="FILE")] = Field(
+    left: Annotated[Path | None, positional("LEFT")] = Field(None, description="The left image.")
+    right: Annotated[Path | None, positional("RIGHT")] = Field(None, description="The right image.")
+    covariance: Annotated[list[str], Word(metavar="FILE")] = Field(
         [],
         description="How sure the calibration is: YAML with sigmas or a covariance, Kalibr's "
         "results-cam.txt, or OpenCV's standard deviations, a file a camera, left first.",
@@ -154,7 +154,7 @@ class UncertaintyRequest(SeededMethodRequest, SizedRigRequest):
     centre_px: float | None = Field(None, ge=0, description="σ of each camera's cx and cy.")
     out: Out = Field(Path("uncertainty"), description="Folder for what is made.")
     depth_m: Annotated[
-        list[float] | None, BeforeValidator(distances_in), Flag(metavar="METRES", has_commas=True)
+        list[float] | None, BeforeValidator(distances_in), Word(metavar="METRES", has_commas=True)
     ] = Field(
         None,
         description="Distances of the points seen, such as 1,10,inf; else 10 and 100 baselines and infinity.",
@@ -184,4 +184,4 @@ class ConvertRequest(SizedRigRequest):
     """A calibration to be written in another format."""
 
     out: Out = Field(description="The file to write; for some formats a folder of files.")
-    to: Annotated[str, Flag(metavar="FORMAT")] = Field("native", description="See `rectbench list formats`.")
+    to: Annotated[str, Word(metavar="FORMAT")] = Field("native", description="See `rectbench list formats`.")

@@ -7,7 +7,7 @@ from typing import Annotated, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from rectbench.applications.requests.request import LISTED, Flag, Positional
+from rectbench.applications.requests.request import LISTED, Word, positional
 from rectbench.applications.requests.shared import (
     ImageWidth,
     MethodRequest,
@@ -24,7 +24,7 @@ class StageRequest(SizedRigRequest):
     """A rig in a scene, and how it is rendered."""
 
     scene: Annotated[
-        Text, Positional("SCENE"), Field(description="A scene's name, or a .py or Mitsuba .xml file.")
+        Text, positional("SCENE"), Field(description="A scene's name, or a .py or Mitsuba .xml file.")
     ]
     motion: str = Field("as-calibrated", description="How the right camera stands to the left.")
     spp: int = Field(64, description="Samples a pixel, a power of two.")
@@ -44,7 +44,7 @@ class ExportRequest(MethodRequest, StageRequest):
 
     out: Out = Field(Path("dataset"), description="The dataset's folder.")
     seeds: Annotated[
-        list[Seed], BeforeValidator(whole_numbers_in), LISTED, Flag(metavar="NUMBERS", has_commas=True)
+        list[Seed], BeforeValidator(whole_numbers_in), LISTED, Word(metavar="NUMBERS", has_commas=True)
     ] = Field([0], description="A pair each, such as 0,1,2.")
 
     @model_validator(mode="after")

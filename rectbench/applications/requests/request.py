@@ -13,22 +13,22 @@ from rectbench.errors import InvalidInput, RectbenchError
 
 
 @dataclass(frozen=True)
-class Flag:
-    """An option of the command line; without names it is called as the field is."""
+class Word:
+    """How the command line spells a field."""
 
     names: tuple[str, ...] = ()
+    """Of an option; as the field is called where left out."""
     metavar: str | None = None
+    is_positional: bool = False
     has_commas: bool = False
-    """Whether a word of the command line may hold several values, separated by commas."""
+    """Whether one word may hold several values, separated by commas."""
     takes_rest: bool = False
     """Whether it may be repeated, and words that are left at the end belong to it as well."""
 
 
-@dataclass(frozen=True)
-class Positional:
-    """A word of the command line that has its place."""
-
-    metavar: str
+def positional(metavar: str) -> Word:
+    """The spelling of a field that is known by its place."""
+    return Word(metavar=metavar, is_positional=True)
 
 
 class Request(BaseModel):

@@ -9,19 +9,19 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, Field, model_validator
 
 from rectbench.applications.requests.config_file import overlaid, read_config
-from rectbench.applications.requests.request import LISTED, Flag, Positional, Request, number
+from rectbench.applications.requests.request import LISTED, Request, Word, number, positional
 from rectbench.applications.requests.shared import Names
 from rectbench.applications.requests.words import OptionSets, option_sets_in, whole_numbers_in
 from rectbench.errors import InvalidInput
 
-RunFolder = Annotated[Path, Positional("RUN"), Field(description="A run's folder.")]
+RunFolder = Annotated[Path, positional("RUN"), Field(description="A run's folder.")]
 
 
 class RunRequest(Request):
     """A report to be run, and what of it."""
 
     report: Annotated[
-        Any, Positional("REPORT"), Field(description="A report's name, or the path of its file.")
+        Any, positional("REPORT"), Field(description="A report's name, or the path of its file.")
     ]
     out: Path | None = Field(None, description="The run's folder; runs/REPORT by default.")
     methods: Names = Field(None, description="Run these in the place of the report's own, +NAME beside them.")
@@ -31,15 +31,15 @@ class RunRequest(Request):
         list[Any] | None,
         BeforeValidator(whole_numbers_in),
         LISTED,
-        Flag(metavar="NUMBERS", has_commas=True),
+        Word(metavar="NUMBERS", has_commas=True),
     ] = Field(None, description="Likewise, such as 0,1,2.")
-    data: Annotated[Path | None, Flag(metavar="FOLDER")] = Field(
+    data: Annotated[Path | None, Word(metavar="FOLDER")] = Field(
         None, description="Photographs, for a report that takes them."
     )
     jobs: Annotated[int | None, number(Integral, "a whole number from 1 on", lambda n: n >= 1)] = Field(
         None, description="Worker processes; one a core by default."
     )
-    dask: Annotated[str | None, Flag(metavar="ADDRESS")] = Field(
+    dask: Annotated[str | None, Word(metavar="ADDRESS")] = Field(
         None, description="Run on this dask scheduler's cluster."
     )
     fresh: bool = Field(False, strict=True, description="Make again what the store has of this run.")
@@ -47,7 +47,7 @@ class RunRequest(Request):
         None, description="TOML with [run] and [methods.NAME]; the command line wins."
     )
     options: Annotated[
-        OptionSets, BeforeValidator(option_sets_in), Flag(("--option",), metavar="METHOD.NAME=VALUE")
+        OptionSets, BeforeValidator(option_sets_in), Word(("--option",), metavar="METHOD.NAME=VALUE")
     ] = Field({}, description="An option of a method; repeatable.")
 
     @model_validator(mode="before")
@@ -84,6 +84,6 @@ class GateRequest(Request):
 class CompareRequest(Request):
     """Two runs."""
 
-    a: Annotated[Path, Positional("A"), Field(description="A run's folder.")]
-    b: Annotated[Path, Positional("B"), Field(description="Another.")]
+    a: Annotated[Path, positional("A"), Field(description="A run's folder.")]
+    b: Annotated[Path, positional("B"), Field(description="Another.")]
     metrics: Names = Field(None, description="Only these columns.")

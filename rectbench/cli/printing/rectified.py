@@ -8,7 +8,7 @@ from rich.console import Console
 from rich.text import Text
 
 from rectbench.applications.choose_method import Choice
-from rectbench.applications.rectified_photographs import RectifiedImages
+from rectbench.applications.photographs.rectified import RectifiedImages
 from rectbench.cli.printing.screen import console, plain_table
 
 _COSTS: tuple[tuple[str, Callable[[Mapping[str, float]], str]], ...] = (

@@ -16,7 +16,7 @@ from rectbench.rigs import Rig
 from rectbench.warps import Rectification
 
 
-def rectify(
+def rectify_rig(
     rig: Rig,
     request: SeededMethodRequest,
     *,

@@ -14,8 +14,10 @@ from rectbench.matching.pose.estimate import PoseEstimate, pose_from_images
 from rectbench.rigs import Rig
 
 
-def estimate_pose(images: StereoPair | Sequence[ArrayLike], rig: Rig, settings: PoseSettings) -> PoseEstimate:
-    """The pose, with a `note` where it contradicts the rig's; raises what `rectbench.estimate_pose` raises."""
+def estimate_rig_pose(
+    images: StereoPair | Sequence[ArrayLike], rig: Rig, settings: PoseSettings
+) -> PoseEstimate:
+    """The pose, noting where it contradicts the rig's; raises what `rectbench.estimate_pose` raises."""
     chosen = settings.model_dump(include=set(PoseSettings.model_fields), exclude_unset=True)
     found = pose_from_images(rig.left, rig.right, checked_images(images, rig), **chosen)
     return replace(found, note=found.contradiction(rig))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from rectbench.applications.rectified_photographs import PairResult
+from rectbench.applications.photographs.rectified import PairResult
 from rectbench.errors import InvalidInput, PoseNotFound
 from rectbench.matching.boards.corners import board_matches
 from rectbench.matching.pose.consistent import consistent_matches

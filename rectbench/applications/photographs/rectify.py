@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 
 from rectbench.applications.calibrated import rig_of
 from rectbench.applications.choose_method import Choice, best_method, uncalibrated_methods
-from rectbench.applications.own_matches import OwnMatches
+from rectbench.applications.photographs.own_matches import OwnMatches
+from rectbench.applications.photographs.rectified import PairResult, RectifiedImages, summary_files
 from rectbench.applications.rectification_files import (
     SIDES,
     SUFFIXES,
@@ -25,7 +26,6 @@ from rectbench.applications.rectification_files import (
     mask_files,
     preview_file,
 )
-from rectbench.applications.rectified_photographs import PairResult, RectifiedImages, summary_files
 from rectbench.applications.requests.photographs import BEST, FramingRequest, RectifyRequest
 from rectbench.calibrations import holds_many
 from rectbench.errors import InvalidInput, UnknownName
