@@ -1,6 +1,7 @@
 """The verbs of `import rectbench as rb`: estimate a pose, rectify a rig, render or export, run a report.
 
-Each fills the request that the command line fills too, see `applications.requests`. Imports all but cli.
+Their arguments are the fields of requests, which the command line fills too and which check them, see
+`applications.requests`. Imports all but cli.
 """
 
 from __future__ import annotations
@@ -127,25 +128,10 @@ def rectify_images(
     >>> made.method, (folder / "out" / "maps.npz").exists()
     ('local-homography', True)
     """
+    given = {name: value for name, value in locals().items() if name not in ("framing", "progress")}
     from rectbench.applications.photographs.rectify import rectify_photographs
 
-    request = RectifyRequest(
-        left=left,
-        right=right,
-        rig=rig,
-        out=out,
-        method=method,
-        options=options,
-        **vars(framing or Framing()),
-        antialias=antialias,
-        tables=tables,
-        measured_pairs=measured_pairs,
-        seed=seed,
-        max_angle_deg=max_angle_deg,
-        unit=unit,
-        cameras=cameras,
-    )
-    return rectify_photographs(request, progress)
+    return rectify_photographs(RectifyRequest(**given, **vars(framing or Framing())), progress)
 
 
 def estimate_pose(
@@ -221,11 +207,9 @@ def render(
     Traceback (most recent call last):
     rectbench.errors.InvalidInput: image_width is 0; expected a width in pixels
     """
+    request = RenderRequest(**locals())
     from rectbench.applications.render import render
 
-    request = RenderRequest(
-        scene=scene, rig=rig, motion=motion, seed=seed, spp=spp, quality=quality, image_width=image_width
-    )
     return render(request)
 
 
@@ -264,21 +248,10 @@ def export_dataset(
     Traceback (most recent call last):
     rectbench.errors.InvalidInput: seeds are empty; expected whole numbers from 0 on, a pair each
     """
+    given = {name: value for name, value in locals().items() if name != "progress"}
     from rectbench.applications.export.dataset import export_dataset
 
-    request = ExportRequest(
-        scene=scene,
-        rig=rig,
-        out=out,
-        motion=motion,
-        seeds=seeds,
-        spp=spp,
-        quality=quality,
-        image_width=image_width,
-        method=method,
-        options=options,
-    )
-    return export_dataset(request, progress)
+    return export_dataset(ExportRequest(**given), progress)
 
 
 def run(
@@ -307,19 +280,7 @@ def run(
     Traceback (most recent call last):
     rectbench.errors.InvalidInput: jobs is 0; expected a whole number from 1 on
     """
+    given = {name: value for name, value in locals().items() if name != "progress"}
     from rectbench.applications.run_report import run_report
 
-    request = RunRequest(
-        report=report,
-        out=out,
-        methods=methods,
-        scenes=scenes,
-        rigs=rigs,
-        seeds=seeds,
-        data=data,
-        options=options,
-        jobs=jobs,
-        dask=dask,
-        fresh=fresh,
-    )
-    return run_report(request, progress)
+    return run_report(RunRequest(**given), progress)

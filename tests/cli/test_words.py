@@ -44,7 +44,7 @@ def test_a_rig_is_a_file_or_a_folder_with_its_option_or_without(shell: Shell, wo
 
 
 def test_files_that_complete_each_other_are_given_in_either_way(shell: Shell) -> None:
-    files = sorted(map(str, RIG.save("cameras", format="mrcal")))
+    files = sorted(map(str, RIG.save("cameras", format="ros")))
     assert shell("convert", *files, "-o", "one.yaml")[0] == 0
     named = [word for file in files for word in ("--rig", file)]
     assert shell("convert", *named, "-o", "other.yaml")[0] == 0

@@ -3,85 +3,97 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any, Literal, Self
+from typing import Any, Literal, Self
 
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import model_validator
 
-from rectbench.applications.requests.request import Request, Word, positional
+from rectbench.applications.requests.request import Request, positional, word
 from rectbench.applications.requests.shared import (
-    LeftImage,
-    MethodSeed,
+    CALIBRATION,
+    METHOD,
+    METHOD_SEED,
+    OUT,
     OptionsRequest,
-    Out,
     Positive,
-    RightImage,
     RigRequest,
     Seed,
     SeededMethodRequest,
     SizedRigRequest,
     Text,
 )
-from rectbench.applications.requests.words import angles_in, crop_in, distances_in, focal_in, size_in
+from rectbench.applications.requests.words import (
+    angles_in,
+    crop_in,
+    distances_in,
+    focal_in,
+    size_in,
+    tables_in,
+)
 from rectbench.errors import InvalidInput
 
 BEST = "best"
-_TABLES = BeforeValidator(lambda kinds: () if list(kinds) == ["none"] else tuple(kinds))
 
 
 class FramingRequest(Request):
     """What of a rectified pair is shown and how large: the fields of `Framing`."""
 
-    crop: Annotated[
-        Literal["valid"] | tuple[float, float, float, float] | None,
-        BeforeValidator(crop_in),
-        Word(metavar="valid|X,Y,W,H"),
-    ] = Field(
-        None, description="Show the largest rectangle in which both images are valid, or one in pixels."
+    crop: Literal["valid"] | tuple[float, float, float, float] | None = word(
+        None,
+        "Show the largest rectangle in which both images are valid, or one in pixels.",
+        metavar="valid|X,Y,W,H",
+        parse=crop_in,
     )
-    fov_deg: Annotated[
-        tuple[float, float] | None, BeforeValidator(angles_in), Word(("--fov",), metavar="DEGxDEG")
-    ] = Field(None, description="Show a field of view, across and down, degrees.")
-    coverage: Annotated[float | None, Word(metavar="SHARE")] = Field(
-        None, description="Show this share of the source pixels, up to 1."
+    fov_deg: tuple[float, float] | None = word(
+        None,
+        "Show a field of view, across and down, degrees.",
+        "--fov",
+        metavar="DEGxDEG",
+        parse=angles_in,
     )
-    size: Annotated[tuple[int, int] | None, BeforeValidator(size_in), Word(metavar="WxH")] = Field(
-        None, description="Size of the rectified images, pixels."
+    coverage: float | None = word(None, "Show this share of the source pixels, up to 1.", metavar="SHARE")
+    size: tuple[int, int] | None = word(
+        None, "Size of the rectified images, pixels.", metavar="WxH", parse=size_in
     )
-    focal_px: Annotated[
-        float | Literal["source"] | None,
-        BeforeValidator(focal_in),
-        Word(("--focal",), metavar="PX|source"),
-    ] = Field(None, description="Pixels per radian in the middle, or those of the source images there.")
-    pixels: Annotated[float | None, Word(metavar="NUMBER")] = Field(
-        None, description="Budget: a larger image is made smaller."
+    focal_px: float | Literal["source"] | None = word(
+        None,
+        "Pixels per radian in the middle, or those of the source images there.",
+        "--focal",
+        metavar="PX|source",
+        parse=focal_in,
     )
+    pixels: float | None = word(None, "Budget: a larger image is made smaller.", metavar="NUMBER")
 
 
 class RectifyRequest(FramingRequest, OptionsRequest, RigRequest):
     """Photographs to be rectified into a folder."""
 
-    left: Annotated[Text, positional("LEFT"), Field(description="The left image, folder or pattern.")]
-    right: Annotated[Text, positional("RIGHT"), Field(description="The right one.")]
-    rig: Annotated[Any, Word(metavar="CALIB", takes_rest=True)] = Field(
+    left: Text = positional("LEFT", "The left image, folder or pattern.")
+    right: Text = positional("RIGHT", "The right one.")
+    rig: Any = word(
         None,
-        description=f"{RigRequest.model_fields['rig'].description} "
-        "Without one, methods that work from matches alone.",
+        f"{CALIBRATION} Without one, methods that work from matches alone.",
+        metavar="CALIB",
+        takes_rest=True,
     )
-    out: Out = Field(Path("rectified"), description="Folder for what is made.")
-    method: Annotated[Text | None, Word(("--method", "-m"))] = Field(
+    out: Path = word(Path("rectified"), "Folder for what is made.", *OUT)
+    method: Text | None = word(
         None,
-        description="A method's name, or a file; or best: all that apply are measured, each showing "
-        "--coverage of the source pixels (95 % where not given), and the least log distortion is chosen. "
-        "local-homography by default, hartley without a calibration.",
+        "A method's name, or a file; or best: all that apply are measured, each showing --coverage of the "
+        "source pixels (95 % where not given), and the least log distortion is chosen. local-homography by "
+        "default, hartley without a calibration.",
+        *METHOD,
     )
-    seed: MethodSeed = 0
-    antialias: bool = Field(False, description="Average over a pixel's footprint where the image shrinks.")
-    tables: Annotated[tuple[str, ...], _TABLES, Word(metavar="KINDS", has_commas=True)] = Field(
+    seed: Seed = word(0, METHOD_SEED)
+    antialias: bool = word(False, "Average over a pixel's footprint where the image shrinks.")
+    tables: tuple[str, ...] = word(
         ("npz", "opencv", "fixed"),
-        description="Lookup tables: npz, opencv, fixed, separated by commas; or none.",
+        "Lookup tables: npz, opencv, fixed, separated by commas; or none.",
+        metavar="KINDS",
+        parse=tables_in,
+        has_commas=True,
     )
-    measured_pairs: Annotated[int, Word(("--measure",), metavar="PAIRS")] = Field(
-        5, ge=0, description="Measure the rows of so many pairs, spread over all."
+    measured_pairs: int = word(
+        5, "Measure the rows of so many pairs, spread over all.", "--measure", metavar="PAIRS", ge=0
     )
 
     @model_validator(mode="after")
@@ -99,67 +111,63 @@ class RectifyRequest(FramingRequest, OptionsRequest, RigRequest):
 class PoseSettings(Request):
     """How a pose is found in two photographs; what is not set is as `pose_from_images` has it."""
 
-    detector: Text = Field("sift", description="Of features: sift, akaze, orb or surf.")
-    ratio: Positive | None = Field(
-        None, description="A match is nearer than the second best by this factor, 0.8 where not given."
+    detector: Text = word("sift", "Of features: sift, akaze, orb or surf.")
+    ratio: Positive | None = word(
+        None, "A match is nearer than the second best by this factor, 0.8 where not given."
     )
-    farthest: Positive | None = Field(None, description="No match's descriptors are farther apart than this.")
-    working_pixels: Positive | None = Field(
-        None, description="A larger image is made as small before features are sought."
+    farthest: Positive | None = word(None, "No match's descriptors are farther apart than this.")
+    working_pixels: Positive | None = word(
+        None, "A larger image is made as small before features are sought."
     )
-    seed: Seed = Field(0, description="Of the random samples.")
+    seed: Seed = word(0, "Of the random samples.")
 
 
 class PoseRequest(PoseSettings, RigRequest):
     """A pair whose pose is to be found."""
 
-    left: LeftImage
-    right: RightImage
-    out: Annotated[Path | None, Word(("--out", "-o"), metavar="FILE")] = Field(
-        None, description="Write the rig in this pose as YAML."
-    )
+    left: Path = positional("LEFT", "The left image.")
+    right: Path = positional("RIGHT", "The right image.")
+    out: Path | None = word(None, "Write the rig in this pose as YAML.", *OUT, metavar="FILE")
 
 
 class ReconstructRequest(SeededMethodRequest, RigRequest):
     """A pair to be reconstructed in 3-D."""
 
-    left: LeftImage
-    right: RightImage
-    out: Out = Field(Path("reconstructed"), description="Folder for what is made.")
-    matcher: str = Field("sgbm", description="The dense matcher: sgbm, sgbm-5way, sgbm-8way or bm.")
-    nearest_baselines: float = Field(
-        4.0, description="Nothing nearer is sought, in multiples of the baseline."
-    )
-    pixels: float = Field(1e6, description="A rectified image of more pixels is made smaller first.")
+    left: Path = positional("LEFT", "The left image.")
+    right: Path = positional("RIGHT", "The right image.")
+    out: Path = word(Path("reconstructed"), "Folder for what is made.", *OUT)
+    matcher: str = word("sgbm", "The dense matcher: sgbm, sgbm-5way, sgbm-8way or bm.")
+    nearest_baselines: float = word(4.0, "Nothing nearer is sought, in multiples of the baseline.")
+    pixels: float = word(1e6, "A rectified image of more pixels is made smaller first.")
 
 
 class UncertaintyRequest(SeededMethodRequest, SizedRigRequest):
     """A calibration, and how sure it is: of a file, by sizes, or from two images."""
 
-    left: Annotated[Path | None, positional("LEFT")] = Field(None, description="The left image.")
-    right: Annotated[Path | None, positional("RIGHT")] = Field(None, description="The right image.")
-    covariance: Annotated[list[str], Word(metavar="FILE")] = Field(
+    left: Path | None = positional("LEFT", "The left image.", None)
+    right: Path | None = positional("RIGHT", "The right image.", None)
+    covariance: list[str] = word(
         [],
-        description="How sure the calibration is: YAML with sigmas or a covariance, Kalibr's "
-        "results-cam.txt, or OpenCV's standard deviations, a file a camera, left first.",
+        "How sure the calibration is: YAML with sigmas or a covariance, Kalibr's results-cam.txt, or "
+        "OpenCV's standard deviations, a file a camera, left first.",
+        metavar="FILE",
     )
-    rotation_deg: float | None = Field(
-        None, ge=0, description="σ of the right camera's rotation, its size over all axes."
+    rotation_deg: float | None = word(None, "σ of the right camera's rotation, its size over all axes.", ge=0)
+    direction_deg: float | None = word(
+        None, "σ of the baseline's direction in the left camera's frame.", ge=0
     )
-    direction_deg: float | None = Field(
-        None, ge=0, description="σ of the baseline's direction in the left camera's frame."
-    )
-    baseline_mm: float | None = Field(None, ge=0, description="σ of the baseline's length.")
-    focal_px: float | None = Field(None, ge=0, description="σ of each camera's fx; fy moves along.")
-    centre_px: float | None = Field(None, ge=0, description="σ of each camera's cx and cy.")
-    out: Out = Field(Path("uncertainty"), description="Folder for what is made.")
-    depth_m: Annotated[
-        list[float] | None, BeforeValidator(distances_in), Word(metavar="METRES", has_commas=True)
-    ] = Field(
+    baseline_mm: float | None = word(None, "σ of the baseline's length.", ge=0)
+    focal_px: float | None = word(None, "σ of each camera's fx; fy moves along.", ge=0)
+    centre_px: float | None = word(None, "σ of each camera's cx and cy.", ge=0)
+    out: Path = word(Path("uncertainty"), "Folder for what is made.", *OUT)
+    depth_m: list[float] | None = word(
         None,
-        description="Distances of the points seen, such as 1,10,inf; else 10 and 100 baselines and infinity.",
+        "Distances of the points seen, such as 1,10,inf; else 10 and 100 baselines and infinity.",
+        metavar="METRES",
+        parse=distances_in,
+        has_commas=True,
     )
-    matching_px: float = Field(0.25, ge=0, description="σ of a match's disparity, in rectified pixels.")
+    matching_px: float = word(0.25, "σ of a match's disparity, in rectified pixels.", ge=0)
 
     @model_validator(mode="after")
     def _checked(self) -> Self:
@@ -183,5 +191,5 @@ class UncertaintyRequest(SeededMethodRequest, SizedRigRequest):
 class ConvertRequest(SizedRigRequest):
     """A calibration to be written in another format."""
 
-    out: Out = Field(description="The file to write; for some formats a folder of files.")
-    to: Annotated[str, Word(metavar="FORMAT")] = Field("native", description="See `rectbench list formats`.")
+    out: Path = word(..., "The file to write; for some formats a folder of files.", *OUT)
+    to: str = word("native", "See `rectbench list formats`.", metavar="FORMAT")

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Self
+from typing import Self
 
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import model_validator
 
-from rectbench.applications.requests.request import LISTED, Word, positional
+from rectbench.applications.requests.request import positional, word
 from rectbench.applications.requests.shared import (
+    OUT,
     ImageWidth,
     MethodRequest,
-    Out,
     Seed,
     SizedRigRequest,
     Text,
@@ -23,29 +23,27 @@ from rectbench.errors import InvalidInput
 class StageRequest(SizedRigRequest):
     """A rig in a scene, and how it is rendered."""
 
-    scene: Annotated[
-        Text, positional("SCENE"), Field(description="A scene's name, or a .py or Mitsuba .xml file.")
-    ]
-    motion: str = Field("as-calibrated", description="How the right camera stands to the left.")
-    spp: int = Field(64, description="Samples a pixel, a power of two.")
-    quality: str = Field("path", description="path or fast.")
-    image_width: ImageWidth = None
+    scene: Text = positional("SCENE", "A scene's name, or a .py or Mitsuba .xml file.")
+    motion: str = word("as-calibrated", "How the right camera stands to the left.")
+    spp: int = word(64, "Samples a pixel, a power of two.")
+    quality: str = word("path", "path or fast.")
+    image_width: ImageWidth | None = word(None, "Scale the rig to this image width, pixels.", "--width")
 
 
 class RenderRequest(StageRequest):
     """One pair."""
 
-    out: Out = Field(Path("rendered"), description="Folder for images, truth and rig.")
-    seed: Seed = Field(0, description="Of scene, motion and noise.")
+    out: Path = word(Path("rendered"), "Folder for images, truth and rig.", *OUT)
+    seed: Seed = word(0, "Of scene, motion and noise.")
 
 
 class ExportRequest(MethodRequest, StageRequest):
     """A dataset: a pair a seed, rectified by a method."""
 
-    out: Out = Field(Path("dataset"), description="The dataset's folder.")
-    seeds: Annotated[
-        list[Seed], BeforeValidator(whole_numbers_in), LISTED, Word(metavar="NUMBERS", has_commas=True)
-    ] = Field([0], description="A pair each, such as 0,1,2.")
+    out: Path = word(Path("dataset"), "The dataset's folder.", *OUT)
+    seeds: list[Seed] = word(
+        [0], "A pair each, such as 0,1,2.", metavar="NUMBERS", parse=whole_numbers_in, has_commas=True
+    )
 
     @model_validator(mode="after")
     def _checked(self) -> Self:

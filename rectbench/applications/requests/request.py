@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from numbers import Integral
 from typing import Any
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError, ValidationInfo
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, ValidationInfo
 
 from rectbench.errors import InvalidInput, RectbenchError
 
@@ -26,9 +26,28 @@ class Word:
     """Whether it may be repeated, and words that are left at the end belong to it as well."""
 
 
-def positional(metavar: str) -> Word:
-    """The spelling of a field that is known by its place."""
-    return Word(metavar=metavar, is_positional=True)
+def word(
+    default: Any,
+    text: str,
+    *names: str,
+    metavar: str | None = None,
+    parse: Callable[..., Any] | None = None,
+    has_commas: bool = False,
+    takes_rest: bool = False,
+    **limits: Any,
+) -> Any:
+    """A field with what it is, its `Word`, what reads its texts, and pydantic's limits (`ge`, ...)."""
+    field = Field(default, description=text, **limits)
+    field.metadata.append(Word(names, metavar, has_commas=has_commas, takes_rest=takes_rest))
+    field.metadata.extend([] if parse is None else [BeforeValidator(parse)])
+    return field
+
+
+def positional(metavar: str, text: str, default: Any = ...) -> Any:
+    """A field that the command line knows by its place."""
+    field = Field(default, description=text)
+    field.metadata.append(Word(metavar=metavar, is_positional=True))
+    return field
 
 
 class Request(BaseModel):
@@ -59,25 +78,27 @@ def _refusal(error: ValidationError) -> RectbenchError:
     return InvalidInput(f"{name} is {fault['input']!r}; expected {expected}")
 
 
-def number(kind: type, expected: str, holds: Callable[[Any], bool]) -> BeforeValidator:
-    """A check of a number of this abstract kind, NumPy's too, for which `holds` is true; bool is none."""
+def number(
+    kind: type, expected: str, holds: Callable[[Any], bool], name: str | None = None
+) -> BeforeValidator:
+    """A check of a number of this abstract kind, NumPy's too, for which `holds` is true; bool is none.
+
+    `name` is what an error calls it; else that of its field.
+    """
     plain: Any = int if kind is Integral else float
 
     def check(value: Any, info: ValidationInfo) -> Any:
         if value is None:
             return None
         if isinstance(value, bool) or not isinstance(value, kind) or not holds(value):
-            raise InvalidInput(f"{info.field_name} is {value!r}; expected {expected}")
+            raise InvalidInput(f"{name or info.field_name} is {value!r}; expected {expected}")
         return plain(value)
 
     return BeforeValidator(check)
 
 
-def _listed(values: Any, info: ValidationInfo) -> Any:
+def listed(values: Any, info: ValidationInfo) -> Any:
+    """Several values as a list; one that is none is refused."""
     if isinstance(values, str) or (values is not None and not isinstance(values, Iterable)):
         raise InvalidInput(f"{info.field_name} is {values!r}; expected a list")
     return None if values is None else list(values)
-
-
-LISTED = BeforeValidator(_listed)
-"""A check that several values are several, in one line."""

@@ -6,49 +6,44 @@ from numbers import Integral
 from pathlib import Path
 from typing import Annotated, Any
 
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import model_validator
 
 from rectbench.applications.requests.config_file import overlaid, read_config
-from rectbench.applications.requests.request import LISTED, Request, Word, number, positional
-from rectbench.applications.requests.shared import Names
+from rectbench.applications.requests.request import Request, listed, number, positional, word
+from rectbench.applications.requests.shared import Text
 from rectbench.applications.requests.words import OptionSets, option_sets_in, whole_numbers_in
 from rectbench.errors import InvalidInput
 
-RunFolder = Annotated[Path, positional("RUN"), Field(description="A run's folder.")]
+Jobs = Annotated[int, number(Integral, "a whole number from 1 on", lambda n: n >= 1)]
+
+
+def _names(text: str) -> Any:
+    return word(None, text, metavar="NAMES", parse=listed, has_commas=True)
 
 
 class RunRequest(Request):
     """A report to be run, and what of it."""
 
-    report: Annotated[
-        Any, positional("REPORT"), Field(description="A report's name, or the path of its file.")
-    ]
-    out: Path | None = Field(None, description="The run's folder; runs/REPORT by default.")
-    methods: Names = Field(None, description="Run these in the place of the report's own, +NAME beside them.")
-    scenes: Names = Field(None, description="Likewise.")
-    rigs: Names = Field(None, description="Likewise.")
-    seeds: Annotated[
-        list[Any] | None,
-        BeforeValidator(whole_numbers_in),
-        LISTED,
-        Word(metavar="NUMBERS", has_commas=True),
-    ] = Field(None, description="Likewise, such as 0,1,2.")
-    data: Annotated[Path | None, Word(metavar="FOLDER")] = Field(
-        None, description="Photographs, for a report that takes them."
+    report: Any = positional("REPORT", "A report's name, or the path of its file.")
+    out: Path | None = word(None, "The run's folder; runs/REPORT by default.")
+    methods: list[Text] | None = _names("Run these in the place of the report's own, +NAME beside them.")
+    scenes: list[Text] | None = _names("Likewise.")
+    rigs: list[Text] | None = _names("Likewise.")
+    seeds: list[Any] | None = word(
+        None, "Likewise, such as 0,1,2.", metavar="NUMBERS", parse=whole_numbers_in, has_commas=True
     )
-    jobs: Annotated[int | None, number(Integral, "a whole number from 1 on", lambda n: n >= 1)] = Field(
-        None, description="Worker processes; one a core by default."
+    data: Path | None = word(None, "Photographs, for a report that takes them.", metavar="FOLDER")
+    jobs: Jobs | None = word(None, "Worker processes; one a core by default.")
+    dask: str | None = word(None, "Run on this dask scheduler's cluster.", metavar="ADDRESS")
+    fresh: bool = word(False, "Make again what the store has of this run.", strict=True)
+    config: Path | None = word(None, "TOML with [run] and [methods.NAME]; the command line wins.")
+    options: OptionSets = word(
+        {},
+        "An option of a method; repeatable.",
+        "--option",
+        metavar="METHOD.NAME=VALUE",
+        parse=option_sets_in,
     )
-    dask: Annotated[str | None, Word(metavar="ADDRESS")] = Field(
-        None, description="Run on this dask scheduler's cluster."
-    )
-    fresh: bool = Field(False, strict=True, description="Make again what the store has of this run.")
-    config: Path | None = Field(
-        None, description="TOML with [run] and [methods.NAME]; the command line wins."
-    )
-    options: Annotated[
-        OptionSets, BeforeValidator(option_sets_in), Word(("--option",), metavar="METHOD.NAME=VALUE")
-    ] = Field({}, description="An option of a method; repeatable.")
 
     @model_validator(mode="before")
     @classmethod
@@ -68,22 +63,20 @@ class RunRequest(Request):
 class ReportRequest(Request):
     """A run whose page is to be written again."""
 
-    folder: RunFolder
+    folder: Path = positional("RUN", "A run's folder.")
 
 
 class GateRequest(Request):
     """A run that is compared with accepted numbers, or accepted."""
 
-    folder: RunFolder
-    accepted: Path | None = Field(
-        None, description="The accepted numbers; beside the report's file by default."
-    )
-    accept: bool = Field(False, description="Make the run's numbers the accepted ones.")
+    folder: Path = positional("RUN", "A run's folder.")
+    accepted: Path | None = word(None, "The accepted numbers; beside the report's file by default.")
+    accept: bool = word(False, "Make the run's numbers the accepted ones.")
 
 
 class CompareRequest(Request):
     """Two runs."""
 
-    a: Annotated[Path, positional("A"), Field(description="A run's folder.")]
-    b: Annotated[Path, positional("B"), Field(description="Another.")]
-    metrics: Names = Field(None, description="Only these columns.")
+    a: Path = positional("A", "A run's folder.")
+    b: Path = positional("B", "Another.")
+    metrics: list[Text] | None = _names("Only these columns.")

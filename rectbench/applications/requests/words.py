@@ -6,20 +6,25 @@ import tomllib
 from collections.abc import Mapping, Sequence
 from typing import Any, Literal
 
+from pydantic import ValidationInfo
+
+from rectbench.applications.requests.request import listed
 from rectbench.errors import InvalidInput
 
 OptionSets = dict[str, dict[str, Any]]
 """Options by method and name."""
 
 
-def whole_numbers_in(words: Any) -> Any:
+def whole_numbers_in(words: Any, info: ValidationInfo) -> Any:
     """Words as whole numbers; numbers stay what they are, and whoever counts with them checks them."""
-    if not isinstance(words, Sequence) or not any(isinstance(word, str) for word in words):
-        return words
+    values = listed(words, info)
+    if not any(isinstance(value, str) for value in values or ()):
+        return values
     try:
-        return [int(word) for word in words]
+        return [int(word) for word in values]
     except ValueError:
-        raise InvalidInput(f"seeds are {_joined(words)}; expected whole numbers such as 0,1,2") from None
+        given = f"{info.field_name} are {_joined(values)}"
+        raise InvalidInput(f"{given}; expected whole numbers such as 0,1,2") from None
 
 
 def distances_in(words: Any) -> Any:
@@ -28,6 +33,11 @@ def distances_in(words: Any) -> Any:
     if numbers is None and words is not None:
         raise InvalidInput(f"--depth-m is {_joined(words)}; expected distances in metres such as 1,10,inf")
     return numbers
+
+
+def tables_in(words: Any) -> Any:
+    """Kinds of tables; of the word none none."""
+    return () if list(words) == ["none"] else tuple(words)
 
 
 def angles_in(text: Any) -> Any:
