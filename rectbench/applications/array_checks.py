@@ -13,8 +13,6 @@ from rectbench.images.stereo_pair import StereoPair
 from rectbench.rigs import Rig
 from rectbench.types import FloatArray, Images, Matches
 
-SIDES = ("left", "right")
-
 
 def checked_rig(rig: object) -> Rig:
     """The rig; what is none says where rigs come from."""
@@ -40,7 +38,9 @@ def checked_matches(matches: Sequence[ArrayLike]) -> Matches:
     """As many pixels of either image."""
     if not isinstance(matches, Sequence) or len(matches) != 2:
         raise InvalidInput(f"matches {_held(matches)}; expected (left [N, 2], right [N, 2])")
-    left, right = (checked_pixels(px, f"{side} matches") for px, side in zip(matches, SIDES, strict=True))
+    left, right = (
+        checked_pixels(px, f"{side} matches") for px, side in zip(matches, ("left", "right"), strict=True)
+    )
     if left.shape != right.shape:
         raise InvalidInput(f"matches have {len(left)} left and {len(right)} right pixels; expected as many")
     return Matches(left, right)
@@ -60,7 +60,7 @@ def checked_images(images: StereoPair | Sequence[ArrayLike], rig: Rig) -> Images
     if len(given) != 2:
         raise InvalidInput(f"images {_held(images)}; expected (left, right)")
     arrays: list[NDArray[np.generic]] = [np.asarray(image) for image in given]
-    for side, image in zip(SIDES, arrays, strict=True):
+    for side, image in zip(("left", "right"), arrays, strict=True):
         camera = getattr(rig, side)
         if image.ndim not in (2, 3) or image.shape[:2] != (camera.height, camera.width):
             size = "x".join(map(str, image.shape[1::-1]))

@@ -33,8 +33,6 @@ STEP_PX = 1e-3
 SCORED_SHARE = 0.05
 """A method maps at least this share of the evaluation pixels."""
 
-Result = Literal["passed", "failed", "unsupported"]
-
 
 @dataclass(frozen=True)
 class CheckResult:
@@ -42,7 +40,7 @@ class CheckResult:
 
     rig: str
     check: str
-    result: Result
+    result: Literal["passed", "failed", "unsupported"]
     detail: str
 
 

@@ -5,9 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pkgutil import resolve_name
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rectbench.errors import UnknownName
+
+if TYPE_CHECKING:
+    from rectbench.registry import Kind
 
 LISTABLE = {
     "methods": "rectbench.plugins.rectifier:METHODS",
@@ -39,14 +42,19 @@ class Listing:
     """Why a plugin at a place cannot be loaded."""
 
 
+def plugin_kinds() -> list[Kind[Any]]:
+    """The kinds of plugins among what can be listed."""
+    return [source for place in LISTABLE.values() if not callable(source := resolve_name(place))]
+
+
 def listed(kind: str) -> Listing:
     """All there is of a kind. Raises UnknownName for a kind that there is not."""
-    from rectbench.registry import Kind, registry
+    from rectbench.registry import registry
 
     if kind not in LISTABLE:
         raise UnknownName("kind", kind, LISTABLE)
     source = resolve_name(LISTABLE[kind])
-    if not isinstance(source, Kind):
+    if callable(source):
         return Listing(tuple(source()))
     found = registry(source)
     entries = (Entry(plugin.name, plugin.summary, plugin.value) for plugin in found.plugins())

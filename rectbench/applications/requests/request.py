@@ -56,7 +56,7 @@ class Request(BaseModel):
     Raises InvalidInput for a value that cannot be used, or a RectbenchError that a field's own check raises.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid", validate_default=False)
+    model_config = ConfigDict(frozen=True, extra="forbid")
 
     def __init__(self, **given: Any) -> None:
         try:
