@@ -2,12 +2,19 @@
 
 from typing import Literal
 
-import numpy as np
-
 import rectbench as rb
 
 
-class Abraham(rb.Rectifier):
+class Options(rb.Options):
+    law: Literal["equidistant", "stereographic", "equisolid", "orthographic", "cylindrical"] = rb.option(
+        "equidistant", "the lens law r(γ) along the rows"
+    )
+    focal_px: float | None = rb.option(
+        None, "focal length f in px; the sources' centre resolution where left out", gt=0
+    )
+
+
+class Abraham(rb.Rectifier[Options]):
     """û = c_x + f r(γ), v̂ = c_y + f β with a classical lens law r; nothing is optimised."""
 
     name = "abraham"
@@ -16,22 +23,8 @@ class Abraham(rb.Rectifier):
         "ISPRS Journal of Photogrammetry and Remote Sensing 59(5), 2005",
     )
 
-    class Options(rb.Options):
-        law: Literal["equidistant", "stereographic", "equisolid", "orthographic", "cylindrical"] = rb.option(
-            "equidistant", "the lens law r(γ) along the rows"
-        )
-        focal_px: float | None = rb.option(
-            None, "focal length f in px; the sources' centre resolution where left out", gt=0
-        )
-
     def fit(self, problem: rb.Problem, options: Options) -> rb.Rectification:
         rb.refuse_epipole_in_view(problem.rig)
         focal = options.focal_px or rb.centre_resolution_px(problem.rig)
-        view = rb.view_angles(problem.rig)
         u, v = rb.Radial(options.law, focal, 0.0), rb.Radial("equidistant", focal, 0.0)
-        left_edge, top_edge = float(u(view.gamma.low)), float(v(view.beta.low))
-        size = int(np.ceil(u(view.gamma.high) - left_edge)), int(np.ceil(v(view.beta.high) - top_edge))
-        target = rb.Epipolar(
-            rb.Radial(options.law, focal, -0.5 - left_edge), rb.Radial("equidistant", focal, -0.5 - top_edge)
-        )
-        return rb.Rectification.from_targets(problem.rig, target, target, size, {"focal_px": focal})
+        return rb.Rectification.from_profiles(problem.rig, u, u, v, {"focal_px": focal})

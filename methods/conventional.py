@@ -1,5 +1,6 @@
 """Conventional rectification: undistort to a perspective image and turn it into the epipolar frame."""
 
+from collections.abc import Callable
 from typing import Literal
 
 import numpy as np
@@ -10,7 +11,21 @@ LEAST_FOCAL_SHARE = 0.01
 """A focal length below this share of the source's resolution shows the world as a dot: refused."""
 
 
-class Conventional(rb.Rectifier):
+class Options(rb.Options):
+    focal: Literal["centre-resolution", "min-distortion", "fov", "balance"] = rb.option(
+        "centre-resolution",
+        "how f is chosen: the source's pixels per radian at its centre, the least distortion L "
+        "(the paper's; tends to a tiny image on wide lenses), a field of view, or a balance",
+    )
+    fov_deg: float = rb.option(
+        100.0, "horizontal field of view of the rectified image, for focal=fov", gt=0, lt=179
+    )
+    balance: float = rb.option(
+        0.0, "for focal=balance: 0 shows source pixels only, 1 all of the source's rim", ge=0, le=1
+    )
+
+
+class Conventional(rb.Rectifier[Options]):
     """û = c_x + f x/z, v̂ = c_y + f y/z after Bouguet's rotations; rays behind the image are masked."""
 
     name = "conventional"
@@ -19,28 +34,16 @@ class Conventional(rb.Rectifier):
         "Fusiello, Trucco and Verri, A compact algorithm for rectification of stereo pairs, 2000",
     )
 
-    class Options(rb.Options):
-        focal: Literal["centre-resolution", "min-distortion", "fov", "balance"] = rb.option(
-            "centre-resolution",
-            "how f is chosen: the source's pixels per radian at its centre, the least distortion L "
-            "(the paper's; tends to a tiny image on wide lenses), a field of view, or a balance",
-        )
-        fov_deg: float = rb.option(
-            100.0, "horizontal field of view of the rectified image, for focal=fov", gt=0, lt=179
-        )
-        balance: float = rb.option(
-            0.0, "for focal=balance: 0 shows source pixels only, 1 all of the source's rim", ge=0, le=1
-        )
-
     def fit(self, problem: rb.Problem, options: Options) -> rb.Rectification:
         rb.refuse_epipole_in_view(problem.rig)
         rig, size = problem.rig, rb.perspective_size(problem.rig)
-        focal = {
+        ways: dict[str, Callable[[], float]] = {
             "centre-resolution": lambda: rb.centre_resolution_px(rig),
             "min-distortion": lambda: self.least_distorted(problem, size),
             "fov": lambda: size[0] / 2 / np.tan(np.radians(options.fov_deg) / 2),
             "balance": lambda: self.balanced(rig, size, options.balance),
-        }[options.focal]()
+        }
+        focal = ways[options.focal]()
         if not focal >= LEAST_FOCAL_SHARE * rb.centre_resolution_px(rig):
             raise rb.Unsupported(
                 f"focal={options.focal} gives f = {focal:.3g} px where the source has "

@@ -19,7 +19,9 @@ class Fusiello(rb.HomographyRectifier):
     name = "fusiello"
     references = ("Fusiello and Irsara, Quasi-Euclidean uncalibrated epipolar rectification, ICPR 2008",)
 
-    def homographies(self, view: rb.PinholeView, options: rb.Options) -> tuple:
+    def homographies(
+        self, view: rb.PinholeView, options: rb.Options
+    ) -> tuple[np.ndarray, np.ndarray, dict[str, float | str]]:
         left, right = (np.column_stack([px, np.ones(len(px))]) for px in view.matches)
         unit = float(sum(view.size))
 
@@ -32,7 +34,11 @@ class Fusiello(rb.HomographyRectifier):
         def fitted(focal: float) -> OptimizeResult:
             """Five angles at a fixed focal length, then all six: the angles must not pay for a poor start."""
             log = np.log(focal / unit)
-            turned = least_squares(lambda angles: sampson(np.append(angles, log), few), level, method="lm")
+
+            def turned_only(angles: np.ndarray) -> np.ndarray:
+                return sampson(np.append(angles, log), few)
+
+            turned = least_squares(turned_only, level, method="lm")
             return all_six(np.append(turned.x, log), few)
 
         # Small rotations leave the focal length open: without bounds noise would carry it anywhere.

@@ -14,7 +14,9 @@ class Hartley(rb.HomographyRectifier):
         "International Journal of Computer Vision 35(2), 1999",
     )
 
-    def homographies(self, view: rb.PinholeView, options: rb.Options) -> tuple:
+    def homographies(
+        self, view: rb.PinholeView, options: rb.Options
+    ) -> tuple[np.ndarray, np.ndarray, dict[str, float | str]]:
         left, right = view.matches
         F = rb.fundamental_matrix(left, right)
         epipole = np.linalg.svd(F.T)[2][-1]  # e' with e'ᵀ F = 0

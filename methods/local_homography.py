@@ -11,7 +11,19 @@ LEAST_SLOPE = 1e-3
 """Ψ' stays above this share of the source's centre resolution, so that the inverse keeps its digits."""
 
 
-class LocalHomography(rb.Rectifier):
+class Options(rb.Options):
+    alpha_ratio: float = rb.option(0.5, "weight α1 of the aspect ratio loss", ge=0)
+    alpha_skew: float = rb.option(0.5, "weight α2 of the skew loss", ge=0)
+    columns: Literal["per-image", "shared"] = rb.option(
+        "per-image", "whether each image has its own Ψ_u or both share one"
+    )
+    start: Literal["equidistant", "random"] = rb.option(
+        "equidistant", "where the minimisation starts: Ψ(θ) = f θ, Abraham's map, or anywhere"
+    )
+    draw: int = rb.option(0, "which of the random starts", ge=0)
+
+
+class LocalHomography(rb.Rectifier[Options]):
     """û = Ψ_u(γ), v̂ = Ψ_v(β), cubics that minimise the resampling distortion L under Ψ' > 0."""
 
     name = "local-homography"
@@ -19,17 +31,6 @@ class LocalHomography(rb.Rectifier):
         "Zhou, Dai and Li, Pixel-variant Local Homography for Fisheye Stereo Rectification "
         "Minimizing Resampling Distortion",
     )
-
-    class Options(rb.Options):
-        alpha_ratio: float = rb.option(0.5, "weight α1 of the aspect ratio loss", ge=0)
-        alpha_skew: float = rb.option(0.5, "weight α2 of the skew loss", ge=0)
-        columns: Literal["per-image", "shared"] = rb.option(
-            "per-image", "whether each image has its own Ψ_u or both share one"
-        )
-        start: Literal["equidistant", "random"] = rb.option(
-            "equidistant", "where the minimisation starts: Ψ(θ) = f θ, Abraham's map, or anywhere"
-        )
-        draw: int = rb.option(0, "which of the random starts", ge=0)
 
     def fit(self, problem: rb.Problem, options: Options) -> rb.Rectification:
         rb.refuse_epipole_in_view(problem.rig)
@@ -51,7 +52,7 @@ class LocalHomography(rb.Rectifier):
             value, gradient = energy(coefficients(y))
             return value, gradient @ rounding
 
-        found = minimize(
+        found = minimize(  # type: ignore[call-overload]  # its stubs know constraints of one number
             energy_and_gradient,
             np.zeros(9),
             jac=True,
@@ -66,22 +67,20 @@ class LocalHomography(rb.Rectifier):
         left, right, rows = coefficients(found.x).reshape(3, 3)
         if options.columns == "shared":
             right = left
-        u_left, u_right = place((left, right), (bounds.gamma_left, bounds.gamma_right))
-        (v,) = place((rows,), (bounds.beta,))
-        width = max(u_left(bounds.gamma_left.high), u_right(bounds.gamma_right.high)) + 0.5
-        size = int(np.ceil(width)), int(np.ceil(v(bounds.beta.high) + 0.5))
+        u_left, u_right, v = (
+            rb.Cubic(0.0, c[0], c[1], c[2], *span)
+            for c, span in zip((left, right, rows), bounds, strict=True)
+        )
         notes: dict[str, float | str] = {"energy": float(found.fun), "iterations": float(found.nit)}
         if not found.success:
             notes["warning"] = f"the minimisation ended early: {found.message}"
-        return rb.Rectification.from_targets(
-            problem.rig, rb.Epipolar(u_left, v), rb.Epipolar(u_right, v), size, notes
-        )
+        return rb.Rectification.from_profiles(problem.rig, u_left, u_right, v, notes, view=bounds)
 
 
 class Energy:
     """L of the coefficients (c1, c2, c3) of Ψ_u left, Ψ_u right and Ψ_v, with its gradient."""
 
-    def __init__(self, problem: rb.Problem, options: LocalHomography.Options) -> None:
+    def __init__(self, problem: rb.Problem, options: Options) -> None:
         warps, pixels = problem.angle_warps(), (problem.pixels_left, problem.pixels_right)
         angles = [warp.forward(px) for warp, px in zip(warps, pixels, strict=True)]
         J = np.concatenate([warp.jacobian(px) for warp, px in zip(warps, pixels, strict=True)])
@@ -121,7 +120,7 @@ class Energy:
         return np.linalg.inv(np.linalg.cholesky(curvature)).T
 
 
-def starting_point(options: LocalHomography.Options, seed: int) -> np.ndarray:
+def starting_point(options: Options, seed: int) -> np.ndarray:
     """Coefficients [9] in units of the source's centre resolution; random ones may even fall."""
     equidistant = np.tile([1.0, 0.0, 0.0], 3)
     if options.start == "equidistant":
@@ -156,10 +155,3 @@ def slope_gradients(c: np.ndarray, bounds: rb.ViewAngles) -> np.ndarray:
     for k in range(3):
         gradients[k, :, k] = basis[k]
     return gradients.reshape(9, 9)
-
-
-def place(coefficients: tuple[np.ndarray, ...], ranges: tuple[tuple[float, float], ...]) -> list[rb.Cubic]:
-    """Cubics that share c0, chosen so that the least of them begins at the frame's edge, -0.5 px."""
-    unplaced = [rb.Cubic(0.0, *c, *span) for c, span in zip(coefficients, ranges, strict=True)]
-    c0 = -0.5 - min(float(cubic(cubic.low)) for cubic in unplaced)
-    return [rb.Cubic(c0, cubic.c1, cubic.c2, cubic.c3, cubic.low, cubic.high) for cubic in unplaced]

@@ -23,6 +23,7 @@ from .experiments.claims import Claim as Claim
 from .experiments.claims import Statement as Statement
 from .experiments.spec import Group as Group
 from .experiments.spec import Report as Report
+from .formulas.protocol import Formulas as Formulas
 from .images.stereo_pair import StereoPair as StereoPair
 from .matching import BoardMatches as BoardMatches
 from .matching import PoseEstimate as PoseEstimate

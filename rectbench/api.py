@@ -21,7 +21,8 @@ from rectbench.applications.requests.running import RunRequest
 from rectbench.applications.requests.shared import SeededMethodRequest
 from rectbench.calibrations.reading import RigSource
 from rectbench.matching.features.matches import RATIO
-from rectbench.matching.pose.estimate import WORKING_PIXELS, PoseEstimate
+from rectbench.matching.pose.estimate import POSE_PIXELS, PoseEstimate
+from rectbench.plugins.defaults import DEFAULT_METHOD
 from rectbench.rigs import Rig
 from rectbench.warps import Framing, Rectification
 
@@ -37,7 +38,7 @@ if TYPE_CHECKING:
 
 def rectify(
     rig: Rig,
-    method: str | Path = "local-homography",
+    method: str | Path = DEFAULT_METHOD,
     images: StereoPair | Sequence[ArrayLike] | None = None,
     pixels: ArrayLike | None = None,
     matches: Sequence[ArrayLike] | None = None,
@@ -141,7 +142,7 @@ def estimate_pose(
     detector: str = "sift",
     ratio: float = RATIO,
     farthest: float | None = None,
-    working_pixels: float | None = WORKING_PIXELS,
+    working_pixels: float | None = POSE_PIXELS,
     seed: int = 0,
 ) -> PoseEstimate:
     """How the right camera stands to the left one as two photographs show it.
@@ -223,7 +224,7 @@ def export_dataset(
     spp: int = 64,
     quality: str = "path",
     image_width: int | None = None,
-    method: str | Path = "local-homography",
+    method: str | Path = DEFAULT_METHOD,
     options: Mapping[str, Any] | None = None,
     progress: bool | None = None,
 ) -> Exported:

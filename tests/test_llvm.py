@@ -2,6 +2,8 @@
 
 import ctypes
 import platform
+import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -33,6 +35,25 @@ assert not swap(place, ctypes.addressof(expected), 9, 9, 5, 5)
 assert value[:] == expected[:] == [3, 4]
 """
     subprocess.run([sys.executable, "-c", code], check=True)
+
+
+@pytest.mark.skipif(not ON_LINUX_X86_64, reason="the stand-in for libatomic is for Linux on x86-64")
+def test_the_stand_in_for_libatomic_is_what_its_source_says_it_is_built_from(tmp_path: Path) -> None:
+    folder = Path(atomic.__file__).parent
+    committed = (folder / atomic.SONAME).read_bytes()
+    if shutil.which("gcc") is None:
+        pytest.skip("there is no gcc here")
+    version = subprocess.run(["gcc", "--version"], capture_output=True, text=True, check=True).stdout
+    compiler = version.splitlines()[0].removeprefix("gcc ")
+    if f"GCC: {compiler}".encode() not in committed:
+        pytest.skip(f"gcc is {compiler}, not the one that the stand-in was built with")
+    for name in ("compare_exchange.c", "libatomic.map"):
+        shutil.copy(folder / name, tmp_path)
+    source = (folder / "compare_exchange.c").read_text()
+    command = re.search(r"gcc -Os.*?compare_exchange\.c", source, re.DOTALL)
+    assert command is not None
+    subprocess.run(re.sub(r"\\\n \*", "", command[0]).split(), cwd=tmp_path, check=True)
+    assert (tmp_path / atomic.SONAME).read_bytes() == committed
 
 
 @pytest.mark.skipif(not ON_LINUX_X86_64, reason="libLLVM comes with the install on Linux x86-64 only")

@@ -13,7 +13,7 @@ from rectbench.calibrations import load_rig
 from rectbench.errors import Unsupported
 from rectbench.experiments.execution.outcomes import outcome_of
 from rectbench.metrics import row_error
-from rectbench.pairs.pairs import placed
+from rectbench.pairs.rendering import placed
 from rectbench.plugins.fitting import checked_options, fit
 from rectbench.plugins.rectifier import Problem, Rectifier, pose_problem
 from rectbench.registry import Plugin

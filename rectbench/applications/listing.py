@@ -19,7 +19,7 @@ LISTABLE = {
     "motions": "rectbench.applications.listing:_motions",
     "poses": "rectbench.applications.listing:_poses",
     "reports": "rectbench.experiments.spec:REPORTS",
-    "formats": "rectbench.applications.listing:_formats",
+    "formats": "rectbench.rigs.file_formats:FORMATS",
 }
 """Where each kind is: a `Kind` of plugins, or a function that gives entries. Imported when it is listed."""
 
@@ -84,11 +84,3 @@ def _poses() -> Iterator[Entry]:
         rotation, direction = f"{noise.rotation_deg:g}°", f"{noise.direction_deg:g}°"
         yield Entry(name, f"rotation off by {rotation}, baseline by {direction}")
     yield Entry(ESTIMATED, "found in the images: features, five points, bundle adjustment")
-
-
-def _formats() -> Iterator[Entry]:
-    from rectbench.calibrations import calibration_formats, written_formats
-
-    words = {None: "", False: "; read and written", True: "; read and written, as a folder"}
-    in_folder = written_formats()
-    return (Entry(name, title + words[in_folder.get(name)]) for name, title in calibration_formats().items())

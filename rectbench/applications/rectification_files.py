@@ -15,7 +15,7 @@ from rectbench.errors import Unavailable, Unsupported
 from rectbench.matching.dense.disparity import rgb8
 from rectbench.warps import Rectification, opencv_form
 from rectbench.warps.description import rectification_text
-from rectbench.warps.rectification import Side
+from rectbench.warps.lookup.resampling import Side
 
 SIDES: tuple[Side, Side] = ("left", "right")
 PNG_TYPES = (np.dtype("uint8"), np.dtype("uint16"))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from rectbench.applications.calibrated import rig_of
 from rectbench.applications.requests.rendering import RenderRequest
-from rectbench.pairs.pairs import build_world, placed, render_seed
+from rectbench.pairs.rendering import placed, render_seed
 from rectbench.plugins.scene import SCENES
 from rectbench.registry import is_path, registry
 
@@ -25,12 +25,12 @@ def render(request: RenderRequest) -> tuple[StereoPair, Truth]:
     """The images and the truth about them; raises what `rectbench.render` raises."""
     from rectbench.rendering.pair import render_pair  # needs Mitsuba
 
-    scene, motion, seed = registry(SCENES).get(request.scene).name, request.motion, request.seed
+    scene, motion, seed = registry(SCENES).get(request.scene), request.motion, request.seed
     rig = rig_of(request)
     return render_pair(
-        build_world(scene_source(request.scene), seed),
-        placed(rig, scene, motion, seed, request.image_width),
-        seed=render_seed(scene, rig.name, motion, seed),
+        scene.value.build(seed),
+        placed(rig, scene.name, motion, seed, request.image_width),
+        seed=render_seed(scene.name, rig.name, motion, seed),
         spp=request.spp,
         quality=request.quality,
     )

@@ -1,15 +1,9 @@
-"""The calibration files people have: one file a format, read and written."""
+"""The calibration files people have: read, recognised, assembled to rigs. Imports rigs and what is below."""
 
+from rectbench.calibrations.built_in_rigs import rig_names
 from rectbench.calibrations.covariance_files import load_covariance
-from rectbench.calibrations.reading import (
-    calibration_formats,
-    holds_many,
-    is_calibration,
-    load_rig,
-    load_rig_of_images,
-    rig_names,
-)
-from rectbench.calibrations.writing import save_rig, written_formats
+from rectbench.calibrations.reading import load_rig, load_rig_of_images
+from rectbench.calibrations.recognising import calibration_formats, holds_many, is_calibration
 
 __all__ = [
     "calibration_formats",
@@ -19,6 +13,4 @@ __all__ = [
     "load_rig",
     "load_rig_of_images",
     "rig_names",
-    "save_rig",
-    "written_formats",
 ]

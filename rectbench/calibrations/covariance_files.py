@@ -23,10 +23,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from rectbench.calibrations.documents.documents import blaming, finite_number, shown
+from rectbench.calibrations.documents.faults import blaming, shown
+from rectbench.calibrations.documents.numbers import finite_number
 from rectbench.calibrations.documents.sources import Source
-from rectbench.calibrations.odometry.kalibr import LAYOUTS
-from rectbench.calibrations.toolboxes.opencv import PINHOLE_ORDER
+from rectbench.calibrations.formats.odometry.kalibr import LAYOUTS
+from rectbench.calibrations.formats.toolboxes.opencv import PINHOLE_ORDER
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
 from rectbench.rigs.covariance import ROTATION, TRANSLATION, RigCovariance
@@ -49,8 +50,17 @@ def load_covariance(
 ) -> RigCovariance:
     """The covariance of the rig's calibration from a file, or from one a camera, left first.
 
-    Which kind a file is of is told by its content, see this module. Raises InvalidInput, in one line
+    The kind of a file is recognised by its content, see this module. Raises InvalidInput, in one line
     that names file and key, for what cannot be read, is no covariance or belongs to another rig.
+
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> import rectbench as rb
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file = Path(folder, "sure.yaml")
+    ...     _ = file.write_text("sigmas: {baseline_m: 0.001, left.fx: 0.5}")
+    ...     rb.load_covariance(file, rb.load_rig("t265")).sigma("left.fx")
+    0.5
     """
     paths = [files] if isinstance(files, str | os.PathLike) else list(files)
     sources = [Source.read(path) for path in paths]

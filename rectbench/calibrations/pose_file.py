@@ -9,12 +9,13 @@ from __future__ import annotations
 
 import cv2
 
-from rectbench.calibrations.contract import rigid
-from rectbench.calibrations.documents.documents import Section, blaming
+from rectbench.calibrations.documents.faults import blaming
+from rectbench.calibrations.documents.sections import Section
 from rectbench.calibrations.documents.sources import Source
-from rectbench.calibrations.native import dump
+from rectbench.calibrations.transforms import rigid
 from rectbench.rigs.rig import Rig, checked_rotation
 from rectbench.types import FloatArray
+from rectbench.yaml_text import yaml_text
 
 ROTATION = ("R_right_left", "R", "rvec", "om", "Om", "rotation_vector", "rotation_matrix")
 TRANSLATION = ("t_right_left", "T", "tvec", "t", "translation_vector", "translation_matrix")
@@ -43,4 +44,4 @@ def read_rotation(file: Section, key: str) -> FloatArray:
 
 def pose_text(rig: Rig) -> str:
     """The file of a rig's pose, by the project's own keys."""
-    return dump({"R_right_left": rig.R_right_left.tolist(), "t_right_left": rig.t_right_left.tolist()})
+    return yaml_text({"R_right_left": rig.R_right_left.tolist(), "t_right_left": rig.t_right_left.tolist()})

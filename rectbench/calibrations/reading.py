@@ -6,74 +6,22 @@ import logging
 import os
 from collections.abc import Sequence
 from dataclasses import replace
-from importlib import resources
-from importlib.resources.abc import Traversable
 from pathlib import Path
 
-from rectbench.calibrations import native
-from rectbench.calibrations import pose_file as pose
-from rectbench.calibrations.contract import CameraFormat, Given, RigFormat, assembled, rig_of_views
-from rectbench.calibrations.datasets import euroc, kitti, kitti360, middlebury
-from rectbench.calibrations.devices import depthai, ost, ros, zed
-from rectbench.calibrations.documents.documents import checked_size, one_line, shown
+from rectbench.calibrations import pose_file
+from rectbench.calibrations.assembling import assembled, rig_of_posed
+from rectbench.calibrations.built_in_rigs import built_in_rig, may_be_rig_name
+from rectbench.calibrations.contract import CameraFormat, Given, RigFormat
+from rectbench.calibrations.documents.faults import one_line, shown
+from rectbench.calibrations.documents.numbers import checked_size
 from rectbench.calibrations.documents.sources import Source, is_folder, sources_in
-from rectbench.calibrations.odometry import basalt, kalibr, ncamera, okvis, orbslam, stella, vins
-from rectbench.calibrations.photogrammetry import colmap
-from rectbench.calibrations.toolboxes import (
-    anipose,
-    boofcv,
-    camodocal,
-    easymocap,
-    matlab,
-    mccalib,
-    mrcal,
-    ocamcalib,
-    opencv,
-)
-from rectbench.errors import InvalidInput, Unavailable, UnknownName
+from rectbench.calibrations.recognising import calibration_formats, camera_format, formats, is_known
+from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig
 
 log = logging.getLogger("rectbench.calibrations")
 
 RigSource = str | os.PathLike[str]
-
-RIG_FORMATS: tuple[RigFormat, ...] = (
-    native.FORMAT,
-    colmap.FORMAT,
-    kitti360.FORMAT,
-    kitti.FORMAT,
-    middlebury.FORMAT,
-    zed.FORMAT,
-    ost.FORMAT,
-    kalibr.FORMAT,
-    basalt.FORMAT,
-    vins.FORMAT,
-    matlab.FORMAT,
-    boofcv.FORMAT,
-    orbslam.FORMAT,
-    stella.FORMAT,
-    ncamera.FORMAT,
-    okvis.FORMAT,
-    depthai.FORMAT,
-    anipose.FORMAT,
-    mccalib.FORMAT,
-    easymocap.FORMAT,
-)
-"""Formats of whole rigs, asked in this order; what only one of them has comes first."""
-
-CAMERA_FORMATS: tuple[CameraFormat, ...] = (
-    mrcal.FORMAT,
-    ocamcalib.FORMAT,
-    ost.CAMERA_FORMAT,
-    camodocal.FORMAT,
-    ros.FORMAT,
-    euroc.FORMAT,
-    matlab.CAMERA_FORMAT,
-)
-"""Formats of single cameras, asked after those of rigs."""
-
-LAST: tuple[RigFormat, ...] = (opencv.FORMAT,)
-"""OpenCV's files have no mark of their own and share their keys with ROS, so they are asked last."""
 
 
 def load_rig(
@@ -97,24 +45,29 @@ def load_rig(
     cameras : names of the left and the right camera in a file with more than two: `["cam0", "cam3"]` of a
         Kalibr chain or a Basalt calibration, two images of a COLMAP model. The first two where left out.
 
-    Formats: see `calibration_formats`; each has a module in `rectbench.rigs` that says what it reads. The
-    first camera of a file, or of a list, is the left one; cameras are never swapped, and a right camera on
-    the left is told in the log.
+    Formats: see `calibration_formats`; each has a module in `rectbench.calibrations.formats` that says what
+    it reads. The first camera of a file, or of a list, is the left one; cameras are never swapped, and a
+    right camera on the left is logged as a warning.
 
     Raises UnknownName for a name that no rig has, and InvalidInput in one line that names file, key
     and what was expected for files that hold no rig.
+
+    >>> import rectbench as rb
+    >>> rig = rb.load_rig("t265")
+    >>> rig.name, rig.left.model, rig.left.size
+    ('t265', 'kannala-brandt', (848, 800))
     """
     given = Given(None if size is None else checked_size(size), unit, _checked_cameras(cameras))
     if isinstance(source, list | tuple) and len(source) == 1:
         (source,) = source
     if isinstance(source, str | os.PathLike):
-        if isinstance(source, str) and _may_be_name(source):
-            return _built_in(source)
-        return _with_order_told(_read([source], given))
+        if isinstance(source, str) and may_be_rig_name(source):
+            return built_in_rig(source)
+        return _checked_order(_read([source], given))
     paths = list(source) if isinstance(source, Sequence) else []
     if not paths or not all(isinstance(path, str | os.PathLike) for path in paths):
         raise InvalidInput("a rig's files are an empty list or hold no paths; expected a list of paths")
-    return _with_order_told(_read(paths, given))
+    return _checked_order(_read(paths, given))
 
 
 def load_rig_of_images(
@@ -136,43 +89,11 @@ def load_rig_of_images(
             raise (error if "`size=`" in str(reason) else reason) from None
 
 
-def rig_names() -> tuple[str, ...]:
-    """The names of the rigs that ship with rectbench, sorted."""
-    return tuple(sorted(_built_in_files()))
-
-
-def calibration_formats() -> dict[str, str]:
-    """The calibration formats that are read: name and what it is."""
-    return {format.name: format.title for format in all_formats()}
-
-
-def all_formats() -> list[RigFormat | CameraFormat]:
-    """Every format, in the order in which files are tried on them."""
-    return [*RIG_FORMATS, *CAMERA_FORMATS, *LAST]
-
-
-def is_calibration(path: RigSource) -> bool:
-    """Whether a file holds a calibration, or a part of one, by its content; False for what cannot be read."""
-    try:
-        return _is_known(Source.read(path))
-    except InvalidInput:
-        return False
-
-
-def holds_many(path: RigSource) -> bool:
-    """Whether a file is of a format that may hold more than two cameras, which `cameras=` chooses from."""
-    try:
-        source = Source.read(path)
-        return any(format.has_many and format.recognises(source) for format in RIG_FORMATS)
-    except InvalidInput:
-        return False
-
-
 def _read(paths: list[RigSource], given: Given) -> Rig:
     if len(paths) > 1 or not is_folder(paths[0]):
         return _read_sources([Source.read(path) for path in paths], given)
     folder = Path(paths[0])
-    sources = [source for source in sources_in(folder) if _is_known(source)]
+    sources = [source for source in sources_in(folder) if is_known(source)]
     if not sources:
         raise InvalidInput(f"{folder}: holds no calibration known here; expected {_expected()}")
     rig = _read_sources(sources, given)
@@ -180,21 +101,18 @@ def _read(paths: list[RigSource], given: Given) -> Rig:
 
 
 def _read_sources(sources: list[Source], given: Given) -> Rig:
-    for format in RIG_FORMATS:
+    for format in formats():
         if any(format.recognises(source) for source in sources):
+            if isinstance(format, CameraFormat):
+                return _read_cameras(sources, given)
             _check_choice(sources[0], format, given)
-            return format.read(sources, given)
-    if any(_camera_format(source) for source in sources):
-        return _read_cameras(sources, given)
-    for format in LAST:
-        if any(format.recognises(source) for source in sources):
             return format.read(sources, given)
     _ = [source.document for source in sources]  # what is damaged says so itself
     raise InvalidInput(f"{sources[0].path}: is no calibration known here; expected {_expected()}")
 
 
-def _with_order_told(rig: Rig) -> Rig:
-    """The rig as it is, with a word in the log where its right camera stands on the left."""
+def _checked_order(rig: Rig) -> Rig:
+    """The rig as it is, with a warning in the log where its right camera stands on the left."""
     x, y, z = rig.centre_right_in_left
     if x < -max(abs(y), abs(z)):
         log.warning(
@@ -226,58 +144,26 @@ def _check_choice(source: Source, format: RigFormat, given: Given) -> None:
 
 def _read_cameras(sources: list[Source], given: Given) -> Rig:
     """The rig of two files of a camera each and, perhaps, a third with their pose."""
-    views = [format.read(source, given) for source in sources if (format := _camera_format(source))]
-    others = [source for source in sources if not _camera_format(source)]
-    if len(views) != 2:
+    posed = [format.read(source, given) for source in sources if (format := camera_format(source))]
+    others = [source for source in sources if not camera_format(source)]
+    if len(posed) != 2:
         _ = [other.document for other in others]  # what is damaged says so itself
-        files = "a file" if len(views) == 1 else f"one of {len(views)} files"
+        files = "a file" if len(posed) == 1 else f"one of {len(posed)} files"
         raise InvalidInput(
-            f"{views[0].where}: is {files} with one camera; expected two of them, left and right"
+            f"{posed[0].where}: is {files} with one camera; expected two of them, left and right"
         )
-    if len(others) > 1 or not all(pose.recognises(other) for other in others):
+    if len(others) > 1 or not all(pose_file.recognises(other) for other in others):
         raise InvalidInput(
             f"{others[0].path}: is no pose; expected one file with R_right_left and t_right_left, or with "
             "OpenCV's R and T, beside the files of two cameras"
         )
-    left, right = views
+    left, right = posed
     name = sources[0].name
     if not others:
-        return rig_of_views(views, given, name)
-    T_right_left = pose.read(others[0])
+        return rig_of_posed(posed, given, name)
+    T_right_left = pose_file.read(others[0])
     return assembled(left.camera, right.camera, T_right_left, given, others[0].path, name)
-
-
-def _camera_format(source: Source) -> CameraFormat | None:
-    return next((format for format in CAMERA_FORMATS if format.recognises(source)), None)
-
-
-def _is_known(source: Source) -> bool:
-    return any(format.recognises(source) for format in all_formats()) or pose.recognises(source)
 
 
 def _expected() -> str:
     return f"one of {', '.join(calibration_formats())}"
-
-
-def _may_be_name(source: str) -> bool:
-    """Whether a string names a built-in rig; a path has a folder or a suffix, or exists as a file."""
-    if Path(source).name != source or Path(source).suffix:
-        return False
-    return source in _built_in_files() or not Path(source).exists()
-
-
-def _built_in(name: str) -> Rig:
-    files = _built_in_files()
-    if name not in files:
-        raise UnknownName("rig", name, files)
-    return native.read_native(f"{name}.yaml", files[name].read_text(encoding="utf-8"))
-
-
-def _built_in_files() -> dict[str, Traversable]:
-    try:
-        folder = resources.files("rectbench_scenes") / "rigs"
-    except ModuleNotFoundError:
-        raise Unavailable(
-            "the built-in rigs are not installed; expected the package rectbench_scenes"
-        ) from None
-    return {Path(file.name).stem: file for file in folder.iterdir() if file.name.endswith(".yaml")}

@@ -1,4 +1,4 @@
-"""Φ, pixel ↔ ray: one file a projection model, one `Camera`."""
+"""Φ, pixel ↔ ray: one `Camera`, its lens and derivatives. Imports formulas and what is below."""
 
 from rectbench.cameras.camera import Camera
 from rectbench.cameras.projection import Projection

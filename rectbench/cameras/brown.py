@@ -17,6 +17,7 @@ from numpy.polynomial import Polynomial
 from rectbench.formulas.domain import FARTHEST, LEAST_SLOPE, first_root
 from rectbench.formulas.inversion import invert_in_disk
 from rectbench.formulas.monotone import edge_of_disk, monotone_radius
+from rectbench.formulas.protocol import Formulas
 
 COEFFICIENTS = ("k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6", "s1", "s2", "s3", "s4")
 STEEPEST = 1e5
@@ -24,7 +25,7 @@ STEEPEST = 1e5
 RADIAL = ("k1", "k2", "k3", "k4", "k5", "k6")
 
 
-def distorted(c: Any, a: Any, b: Any, xp: Any) -> tuple[Any, Any]:
+def distorted(c: Any, a: Any, b: Any, xp: Formulas) -> tuple[Any, Any]:
     """Where the lens puts the point (a, b) of the ideal plane."""
     q = a * a + b * b
     radial = (1.0 + q * (c.k1 + q * (c.k2 + q * c.k3))) / (1.0 + q * (c.k4 + q * (c.k5 + q * c.k6)))
@@ -35,7 +36,7 @@ def distorted(c: Any, a: Any, b: Any, xp: Any) -> tuple[Any, Any]:
     )
 
 
-def undistorted(c: Any, a: Any, b: Any, xp: Any) -> tuple[Any, Any, Any]:
+def undistorted(c: Any, a: Any, b: Any, xp: Formulas) -> tuple[Any, Any, Any]:
     """The ideal point of the distorted (a, b), and whether there is one; `c` holds the `edge`."""
     return invert_in_disk(distorted, c, a, b, c.max_radius, c.reach, xp)
 

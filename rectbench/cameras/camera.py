@@ -19,6 +19,7 @@ from rectbench.cameras.parameters import checked_parameters
 from rectbench.cameras.projection import Projection, as_points
 from rectbench.errors import InvalidInput
 from rectbench.formulas.domain import PIXEL_SLACK, RAY_SLACK
+from rectbench.formulas.protocol import Formulas
 from rectbench.types import BoolArray, Constants, FloatArray
 
 
@@ -37,6 +38,15 @@ class Camera(Projection):
         None where the model's own domain is the only bound.
 
     Raises InvalidInput for a size, parameter or angle that makes no camera.
+
+    >>> import rectbench as rb
+    >>> centre = {"cx": 319.5, "cy": 239.5}
+    >>> camera = rb.Camera("equidistant", (640, 480), {"fx": 200, "fy": 200, **centre}, max_angle_deg=95)
+    >>> pixels, seen = camera.project([[0, 0, 1], [1, 0, 0], [0, 0, -1]])  # ahead, to the right, behind
+    >>> pixels.round(2)
+    array([[319.5 , 239.5 ], [633.66, 239.5 ], [   nan,    nan]])
+    >>> seen
+    array([ True,  True, False])
     """
 
     model: str
@@ -75,11 +85,11 @@ class Camera(Projection):
         """Image height, pixels."""
         return self.size[1]
 
-    def project_formula(self, c: Any, x: Any, y: Any, z: Any, xp: Any) -> tuple[Any, Any, Any]:
+    def project_formula(self, c: Any, x: Any, y: Any, z: Any, xp: Formulas) -> tuple[Any, Any, Any]:
         u, v, ok = lens_named(self.model).project(c, x, y, z, xp)
         return u, v, ok & (z >= (c.cos_max_angle - RAY_SLACK) * xp.sqrt(x * x + y * y + z * z))
 
-    def unproject_formula(self, c: Any, u: Any, v: Any, xp: Any) -> tuple[Any, Any, Any, Any]:
+    def unproject_formula(self, c: Any, u: Any, v: Any, xp: Formulas) -> tuple[Any, Any, Any, Any]:
         x, y, z, ok = lens_named(self.model).unproject(c, u, v, xp)
         return x, y, z, ok & (z >= c.cos_max_angle - PIXEL_SLACK)
 

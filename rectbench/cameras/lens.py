@@ -7,9 +7,10 @@ from collections.abc import Mapping
 from types import SimpleNamespace
 from typing import Any, ClassVar
 
-from rectbench.cameras.parameters import POSITIVE, Interval
+from rectbench.cameras.intervals import POSITIVE, Interval
 from rectbench.errors import UnknownName
 from rectbench.formulas.domain import PIXEL_SLACK, RAY_SLACK
+from rectbench.formulas.protocol import Formulas
 
 FOCAL_PARAMETERS = ("fx", "fy", "cx", "cy")
 AXIS_SINE = 1e-12
@@ -36,11 +37,11 @@ class Lens(ABC):
         return {}
 
     @abstractmethod
-    def to_plane(self, c: Any, x: Any, y: Any, z: Any, xp: Any) -> tuple[Any, Any, Any]:
+    def to_plane(self, c: Any, x: Any, y: Any, z: Any, xp: Formulas) -> tuple[Any, Any, Any]:
         """Lens plane point (mx, my) of a ray of any length, and whether the ray is in the domain."""
 
     @abstractmethod
-    def from_plane(self, c: Any, mx: Any, my: Any, xp: Any) -> tuple[Any, Any, Any, Any]:
+    def from_plane(self, c: Any, mx: Any, my: Any, xp: Formulas) -> tuple[Any, Any, Any, Any]:
         """Unit ray of the lens plane point, and whether the point is in the domain."""
 
     def to_pixel(self, c: Any, mx: Any, my: Any) -> tuple[Any, Any]:
@@ -54,12 +55,12 @@ class Lens(ABC):
         u = u - c.cx
         return (u - c.skew * my if "skew" in self.parameters else u) / c.fx, my
 
-    def project(self, c: Any, x: Any, y: Any, z: Any, xp: Any) -> tuple[Any, Any, Any]:
+    def project(self, c: Any, x: Any, y: Any, z: Any, xp: Formulas) -> tuple[Any, Any, Any]:
         """Pixel (u, v) of the ray (x, y, z) of any length; whether the ray is in the domain."""
         mx, my, ok = self.to_plane(c, x, y, z, xp)
         return *self.to_pixel(c, mx, my), ok
 
-    def unproject(self, c: Any, u: Any, v: Any, xp: Any) -> tuple[Any, Any, Any, Any]:
+    def unproject(self, c: Any, u: Any, v: Any, xp: Formulas) -> tuple[Any, Any, Any, Any]:
         """Unit ray (x, y, z) of the pixel (u, v); whether the pixel is in the domain."""
         return self.from_plane(c, *self.from_pixel(c, u, v), xp)
 
@@ -82,21 +83,21 @@ class RadialLens(Lens):
     """
 
     @abstractmethod
-    def radius(self, c: Any, theta: Any, xp: Any) -> Any:
+    def radius(self, c: Any, theta: Any, xp: Formulas) -> Any:
         """Radius on the lens plane of the angle theta from the axis, radians."""
 
     @abstractmethod
-    def angle(self, c: Any, radius: Any, xp: Any) -> Any:
+    def angle(self, c: Any, radius: Any, xp: Formulas) -> Any:
         """Angle from the axis, radians, of a radius on the lens plane up to `max_radius`."""
 
-    def to_plane(self, c: Any, x: Any, y: Any, z: Any, xp: Any) -> tuple[Any, Any, Any]:
+    def to_plane(self, c: Any, x: Any, y: Any, z: Any, xp: Formulas) -> tuple[Any, Any, Any]:
         # Only in front: straight back the lens has no one image, and 0/0 says so.
         off_axis = xp.maximum(xp.hypot(x, y), AXIS_SINE * z)
         theta = xp.atan2(off_axis, z)
         scale = self.radius(c, theta, xp) / off_axis
         return scale * x, scale * y, theta <= c.max_theta + RAY_SLACK
 
-    def from_plane(self, c: Any, mx: Any, my: Any, xp: Any) -> tuple[Any, Any, Any, Any]:
+    def from_plane(self, c: Any, mx: Any, my: Any, xp: Formulas) -> tuple[Any, Any, Any, Any]:
         radius = xp.maximum(xp.hypot(mx, my), AXIS_SINE)
         theta = self.angle(c, xp.minimum(radius, c.max_radius), xp)
         scale = xp.sin(theta) / radius

@@ -9,7 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rectbench.errors import InvalidInput
-from rectbench.formulas.arrays import JetNamespace, as_jets, constant, evaluate_points, variables
+from rectbench.formulas.evaluation import evaluate_points
+from rectbench.formulas.jets import JetNamespace, as_jets, constant, variables
+from rectbench.formulas.protocol import Formulas
 from rectbench.types import BoolArray, Constants, FloatArray
 
 __all__ = ["BoolArray", "Projection", "as_points", "projected_partials"]
@@ -29,8 +31,23 @@ def as_points(array: ArrayLike, width: int, name: str) -> FloatArray:
 class Projection(ABC):
     """A mapping between rays (x right, y down, z forward) and pixels, invertible on its domain.
 
-    A subclass states its two formulas against a namespace `xp` (see `rectbench.formulas.arrays`) and
+    A subclass states its two formulas against a namespace `xp` (see `rectbench.formulas.protocol`) and
     the constants in them; everything else, derivatives included, follows from those.
+
+    >>> import rectbench as rb
+    >>> class Stereographic(rb.Projection):  # 100 px · tan(θ/2) from the centre
+    ...     constants = {"f": 100.0}
+    ...     def project_formula(self, c, x, y, z, xp):
+    ...         reach = xp.sqrt(x * x + y * y + z * z) + z
+    ...         return c.f * x / reach, c.f * y / reach, reach > 0
+    ...     def unproject_formula(self, c, u, v, xp):
+    ...         p, q = u / c.f, v / c.f
+    ...         square = p * p + q * q
+    ...         return 2 * p / (1 + square), 2 * q / (1 + square), (1 - square) / (1 + square), square >= 0
+    >>> Stereographic().project([1, 0, 0])
+    (array([100.,   0.]), array(True))
+    >>> Stereographic().project_jacobian([0, 0, 1])
+    array([[50.,  0.,  0.], [ 0., 50.,  0.]])
     """
 
     @property
@@ -39,11 +56,11 @@ class Projection(ABC):
         """The numbers in the formulas, by the names under which these read them."""
 
     @abstractmethod
-    def project_formula(self, c: Any, x: Any, y: Any, z: Any, xp: Any) -> tuple[Any, Any, Any]:
+    def project_formula(self, c: Any, x: Any, y: Any, z: Any, xp: Formulas) -> tuple[Any, Any, Any]:
         """Pixel (u, v) of the ray (x, y, z), of any length, and whether the ray is in the domain."""
 
     @abstractmethod
-    def unproject_formula(self, c: Any, u: Any, v: Any, xp: Any) -> tuple[Any, Any, Any, Any]:
+    def unproject_formula(self, c: Any, u: Any, v: Any, xp: Formulas) -> tuple[Any, Any, Any, Any]:
         """Unit ray (x, y, z) of the pixel (u, v), and whether the pixel is in the domain."""
 
     def project(self, rays: ArrayLike) -> tuple[FloatArray, BoolArray]:
@@ -61,13 +78,13 @@ class Projection(ABC):
     def project_jacobian(self, rays: ArrayLike) -> FloatArray:
         """d(pixel)/d(ray) [..., 2, 3] at rays [..., 3]; NaN outside the domain.
 
-        The pixel does not hang on the ray's length, so each row is orthogonal to the ray.
+        The pixel does not depend on the ray's length, so each row is orthogonal to the ray.
         """
         rays = as_points(rays, 3, "rays")
         partials, _ = evaluate_points(self._project_jacobian_formula, self.constants, rays)
         return partials.reshape(*rays.shape[:-1], 2, 3)
 
-    def _project_jacobian_formula(self, c: Any, x: Any, y: Any, z: Any, xp: Any) -> tuple[Any, ...]:
+    def _project_jacobian_formula(self, c: Any, x: Any, y: Any, z: Any, xp: Formulas) -> tuple[Any, ...]:
         (ux, uy, uz), (vx, vy, vz), ok = projected_partials(self, c, x, y, z, xp)
         return ux, uy, uz, vx, vy, vz, ok
 
@@ -89,7 +106,7 @@ class Projection(ABC):
 
 
 def projected_partials(
-    projection: Projection, c: Any, x: Any, y: Any, z: Any, xp: Any
+    projection: Projection, c: Any, x: Any, y: Any, z: Any, xp: Formulas
 ) -> tuple[tuple[Any, ...], tuple[Any, ...], Any]:
     """The partial derivatives of u and of v by x, y, z, and the mask, as part of a formula."""
     u, v, ok = projection.project_formula(as_jets(c), *variables(x, y, z), JetNamespace(xp))

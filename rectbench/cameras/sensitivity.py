@@ -1,4 +1,4 @@
-"""How a pixel hangs on the lens's own parameters: what a calibration's uncertainty is propagated by.
+"""How a pixel depends on the lens's own parameters: what a calibration's uncertainty is propagated by.
 
 A parameter goes by its name in the model; an entry of a sequence by name and place, such as `poly.0`.
 """
@@ -18,7 +18,9 @@ from rectbench.cameras.lens import lens_named
 from rectbench.cameras.parameters import Parameter
 from rectbench.cameras.projection import as_points
 from rectbench.errors import UnknownName
-from rectbench.formulas.arrays import Jet, JetNamespace, constant, evaluate_points
+from rectbench.formulas.evaluation import evaluate_points
+from rectbench.formulas.jets import Jet, JetNamespace, constant
+from rectbench.formulas.protocol import Formulas
 from rectbench.types import Constants, FloatArray
 
 DERIVED_STEP = 1e-6
@@ -45,7 +47,7 @@ def projection_by_parameters(camera: Camera, rays: ArrayLike, names: Sequence[st
     """d(pixel)/d(parameter) [..., 2, P] of fixed rays [..., 3], for P names; NaN outside the domain."""
     rays = as_points(rays, 3, "rays")
 
-    def formula(c: Any, x: Any, y: Any, z: Any, xp: Any) -> tuple[Any, ...]:
+    def formula(c: Any, x: Any, y: Any, z: Any, xp: Formulas) -> tuple[Any, ...]:
         by_u, by_v, ok = parameter_partials(camera, c, len(names), x, y, z, xp)
         return *by_u, *by_v, ok
 
@@ -57,14 +59,14 @@ def parameter_constants(camera: Camera, names: Sequence[str]) -> Constants:
     """The constants of `parameter_partials`: the camera's own, and the slope of each by each parameter.
 
     A parameter's slope by itself is 1. What the model derives from its parameters, once a camera, is
-    differenced: those are a few numbers, and smooth wherever a pixel hangs on them.
+    differenced: those are a few numbers, and smooth wherever a pixel depends on them.
     """
     columns = [_slopes(camera, name) for name in names]
     return {"value": camera.constants, "slope": _transposed(camera.constants, columns)}
 
 
 def parameter_partials(
-    camera: Camera, c: Any, count: int, x: Any, y: Any, z: Any, xp: Any
+    camera: Camera, c: Any, count: int, x: Any, y: Any, z: Any, xp: Formulas
 ) -> tuple[tuple[Any, ...], tuple[Any, ...], Any]:
     """The partial derivatives of u and of v by the parameters, and the mask, as part of a formula.
 
@@ -72,7 +74,7 @@ def parameter_partials(
     """
     ray = (constant(x), constant(y), constant(z))
     u, v, ok = camera.project_formula(_jets(c.value, c.slope), *ray, JetNamespace(xp))
-    none = (0.0 * x,) * count  # of a coordinate that hangs on none of them, as v on fx
+    none = (0.0 * x,) * count  # of a coordinate that depends on none of them, as v on fx
     return constant(u).partials or none, constant(v).partials or none, ok
 
 
@@ -110,7 +112,7 @@ def _difference(a: Any, b: Any, step: float) -> Any:
         return {name: _difference(value, b[name], step) for name, value in a.items()}
     if isinstance(a, tuple):
         return tuple(_difference(p, q, step) for p, q in zip(a, b, strict=True))
-    # An edge of the domain may lie at infinity; no pixel hangs on where it is.
+    # An edge of the domain may lie at infinity; no pixel depends on where it is.
     return (a - b) / step if np.isfinite(a) and np.isfinite(b) else 0.0
 
 
@@ -119,7 +121,7 @@ def _like(value: Any, number: float) -> Any:
 
 
 def _transposed(constants: Any, columns: Sequence[Any]) -> Any:
-    """For each constant its slopes by all parameters, none where it hangs on none of them."""
+    """For each constant its slopes by all parameters, none where it depends on none of them."""
     if isinstance(constants, Mapping):
         return {name: _transposed(held, [c[name] for c in columns]) for name, held in constants.items()}
     if isinstance(constants, tuple):

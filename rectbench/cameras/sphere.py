@@ -11,6 +11,7 @@ import math
 from typing import Any
 
 from rectbench.formulas.domain import LEAST_SLOPE, PIXEL_SLACK, RAY_SLACK
+from rectbench.formulas.protocol import Formulas
 
 
 def edge(alpha: float) -> dict[str, float]:
@@ -22,20 +23,20 @@ def edge(alpha: float) -> dict[str, float]:
     return {"max_square": square, "least_cosine": mz / math.hypot(mz, math.sqrt(square))}
 
 
-def to_sphere_plane(c: Any, x: Any, y: Any, z: Any, square: Any, xp: Any) -> tuple[Any, Any, Any]:
+def to_sphere_plane(c: Any, x: Any, y: Any, z: Any, square: Any, xp: Formulas) -> tuple[Any, Any, Any]:
     """(mx, my) of a point whose d² is square + z², and whether it is on the near side."""
     d, beyond = distance(z, square, xp)
     depth = c.alpha * beyond + (1.0 - 2.0 * c.alpha) * z
     return x / depth, y / depth, (depth > 0.0) & (z >= (c.least_cosine - RAY_SLACK) * d)
 
 
-def distance(z: Any, square: Any, xp: Any) -> tuple[Any, Any]:
+def distance(z: Any, square: Any, xp: Formulas) -> tuple[Any, Any]:
     """d = sqrt(square + z²), and d + z without the cancellation of that sum behind the centre."""
     d = xp.sqrt(square + z * z)
     return d, xp.where(z < 0.0, square / (d - z), d + z)
 
 
-def from_sphere_plane(c: Any, square: Any, xp: Any) -> tuple[Any, Any]:
+def from_sphere_plane(c: Any, square: Any, xp: Formulas) -> tuple[Any, Any]:
     """The depth mz of the line of sight (mx, my, mz) of a squared radius, and whether it has one."""
     within = xp.minimum(square, c.max_square)
     root = xp.sqrt(1.0 - (2.0 * c.alpha - 1.0) * within)

@@ -1,1 +1,1 @@
-"""One formula for NumPy arrays, Dr.Jit arrays and derivatives; monotone functions and their inverses."""
+"""The language of formulas on NumPy, Dr.Jit and jets; inverses of rising functions. Imports llvm, types."""

@@ -6,16 +6,12 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from rectbench.formulas.arrays import (
-    Jet,
-    JetNamespace,
-    as_jets,
-    constant,
-    repeat_until_settled,
-    variables,
-    without_partials,
-)
+import numpy as np
+
 from rectbench.formulas.domain import PIXEL_SLACK
+from rectbench.formulas.jets import Jet, JetNamespace, as_jets, constant, variables, without_partials
+from rectbench.formulas.namespaces import NUMPY
+from rectbench.formulas.protocol import Formulas
 
 MOST_STEPS = 80
 """Bisection alone takes 53 steps; Newton's rarely more than six."""
@@ -25,8 +21,30 @@ SETTLED = 4e-16
 """A step this small, relative to where it stands, is rounding."""
 
 
+def repeat_until_settled(
+    step: Callable[..., tuple[Any, ...]],
+    unsettled: Callable[..., Any],
+    state: tuple[Any, ...],
+    xp: Formulas,
+) -> tuple[Any, ...]:
+    """Repeat ``state = step(*state)`` on each element for as long as ``unsettled(*state)`` holds there.
+
+    An element stops by itself, so its digits do not depend on its neighbours. In a kernel this is a
+    real loop, which compiles faster and ends sooner than unrolled steps.
+    """
+    if xp is not NUMPY:
+        import drjit as dr
+
+        looped: tuple[Any, ...] = dr.while_loop(state, unsettled, step)
+        return looped
+    while np.any(active := unsettled(*state)):
+        following = step(*state)
+        state = tuple(np.where(active, new, old) for new, old in zip(following, state, strict=True))
+    return state
+
+
 def invert_monotone(
-    function: Callable[[Any], tuple[Any, Any]], target: Any, low: Any, high: Any, start: Any, xp: Any
+    function: Callable[[Any], tuple[Any, Any]], target: Any, low: Any, high: Any, start: Any, xp: Formulas
 ) -> Any:
     """x in [low, high] with function(x) = target, by Newton steps held inside a shrinking bracket.
 
@@ -51,14 +69,20 @@ def invert_monotone(
     def unsettled(x: Any, low: Any, high: Any, move: Any, count: Any) -> Any:
         return (xp.abs(move) > SETTLED * xp.abs(x)) & (count < MOST_STEPS)
 
-    nought = 0.0 * target
-    low, high = low + nought, high + nought
-    state = (start + nought, low, high, 4.0 * (high - low), nought)
+    zero = 0.0 * target
+    low, high = low + zero, high + zero
+    state = (start + zero, low, high, 4.0 * (high - low), zero)
     return repeat_until_settled(step, unsettled, state, xp)[0]
 
 
 def inverse(
-    formula: Callable[[Any, Any, Any], Any], c: Any, target: Any, high: Any, most: Any, start: Any, xp: Any
+    formula: Callable[[Any, Any, Any], Any],
+    c: Any,
+    target: Any,
+    high: Any,
+    most: Any,
+    start: Any,
+    xp: Formulas,
 ) -> Any:
     """x in [0, high] with formula(c, x, xp) = target; the formula rises from 0 there, up to `most`.
 
@@ -66,7 +90,7 @@ def inverse(
     or the constants are jets, the answer carries their derivatives: those of the inverse, not of the
     steps to it. From f(c, x) = target, dx = (d target - ∂f/∂c dc) / (∂f/∂x).
     """
-    if isinstance(target, Jet):
+    if isinstance(target, Jet) and isinstance(xp, JetNamespace):
         high, most, start = (constant(number).value for number in (high, most, start))
         plain = without_partials(c)
         x = inverse(formula, plain, target.value, high, most, start, xp.xp)
@@ -88,7 +112,7 @@ def invert_in_disk(
     v: Any,
     radius: Any,
     reach: Any,
-    xp: Any,
+    xp: Formulas,
 ) -> tuple[Any, Any, Any]:
     """The point (a, b) of the disk with formula(c, a, b, xp) = (u, v), and whether there is one.
 
@@ -126,8 +150,8 @@ def invert_in_disk(
         return (moving | (count < 1.0)) & (count < MOST_STEPS)
 
     size = u * u + v * v
-    nought = 0.0 * size
-    steps_taken = xp.where(size <= reach * reach, nought, nought + MOST_STEPS)
-    state = (*within(u, v), nought, nought, nought + math.inf, steps_taken)
+    zero = 0.0 * size
+    steps_taken = xp.where(size <= reach * reach, zero, zero + MOST_STEPS)
+    state = (*within(u, v), zero, zero, zero + math.inf, steps_taken)
     a, b, _, _, miss, _ = repeat_until_settled(step, unsettled, state, xp)
     return a, b, miss <= PIXEL_SLACK * PIXEL_SLACK * xp.maximum(1.0, size)

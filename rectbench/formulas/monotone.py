@@ -9,8 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from rectbench.formulas.arrays import NUMPY, JetNamespace, as_jets, variables
 from rectbench.formulas.domain import LEAST_SLOPE
+from rectbench.formulas.jets import JetNamespace, as_jets, variables
+from rectbench.formulas.namespaces import NUMPY
 
 PlaneFormula = Callable[[Any, Any, Any, Any], tuple[Any, Any]]
 """formula(c, a, b, xp): where a distortion puts the point (a, b) of the plane."""

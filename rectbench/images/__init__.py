@@ -1,1 +1,1 @@
-"""Pictures as they come: the pair of a rig, reading, grey and RGB of 8 bits."""
+"""Photographs as arrays: the pair of a rig, reading, 8-bit grey. Imports rigs and what is below."""

@@ -20,6 +20,14 @@ class StereoPair:
     """The images of a rig: `left`, `right` uint8 sRGB [H, W, 3], each of its camera's size.
 
     Raises InvalidInput for an array that is no such image.
+
+    >>> import numpy as np
+    >>> import rectbench as rb
+    >>> black = np.zeros((480, 640, 3), np.uint8)
+    >>> rb.StereoPair(black, black).check(rb.load_rig("t265"))
+    Traceback (most recent call last):
+    ...
+    rectbench.errors.InvalidInput: left image is 640x480; expected 848x800, the size of rig t265's camera
     """
 
     left: Image

@@ -1,4 +1,4 @@
-"""Matches between images, and the geometry they determine."""
+"""Matches between images, and the geometry they determine. Imports warps, images and what is below."""
 
 from rectbench.matching.boards.corners import BoardMatches, board_matches
 from rectbench.matching.dense.disparity import Disparity, dense_disparity

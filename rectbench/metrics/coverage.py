@@ -8,7 +8,7 @@ import numpy as np
 
 from rectbench.cameras import Camera
 from rectbench.cameras.projection import projected_partials
-from rectbench.formulas.arrays import evaluate_points
+from rectbench.formulas.evaluation import evaluate_points
 from rectbench.rigs import Rig
 from rectbench.types import FloatArray
 from rectbench.warps import Rectification, Warp

@@ -10,7 +10,7 @@ import numpy as np
 
 from rectbench.cameras.projection import projected_partials
 from rectbench.cameras.sensitivity import parameter_constants, parameter_partials
-from rectbench.formulas.arrays import evaluate_points
+from rectbench.formulas.evaluation import evaluate_points
 from rectbench.rigs import Rig, RigCovariance
 from rectbench.rigs.covariance import POSE
 from rectbench.types import FloatArray

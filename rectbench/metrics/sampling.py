@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from rectbench.formulas.arrays import evaluate_points
+from rectbench.formulas.evaluation import evaluate_points
 from rectbench.metrics.distortion import PROTOCOLS, WEIGHTS
 from rectbench.types import FloatArray
 from rectbench.warps import Rectification, Warp, evaluation_pixels

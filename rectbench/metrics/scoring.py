@@ -2,11 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
+import numpy as np
+
+from rectbench.errors import PoseNotFound
+from rectbench.matching import reconstruct
 from rectbench.metrics.coverage import coverage
 from rectbench.metrics.distortion import PROTOCOLS, distortion_of, log_distortion
+from rectbench.metrics.energy import energy_convex_share
 from rectbench.metrics.order import order
+from rectbench.metrics.reconstruction import reconstruction_scores
 from rectbench.metrics.rows import row_error
 from rectbench.metrics.sampling import every_pixel
+from rectbench.metrics.stopwatch import timed, warm_seconds
+from rectbench.plugins.metric import Case
 from rectbench.rigs import Rig
 from rectbench.types import Matches
 from rectbench.warps import Rectification
@@ -71,3 +81,67 @@ def _geometry(rect: Rectification, rig: Rig) -> dict[str, float]:
 def distortion_columns(at_grid: Jacobians) -> dict[str, float]:
     """L under each protocol, the cheapest of the metrics."""
     return {f"distortion_{protocol}": float(distortion_of(at_grid, protocol)) for protocol in PROTOCOLS}
+
+
+def needs_of(asked: Sequence[str]) -> frozenset[str]:
+    images = {"row_error_features", "row_error_board", "reconstruction"}
+    return frozenset({"images"} if images & set(asked) else set())
+
+
+def scoring_digest(asked: Sequence[str]) -> str:
+    return ""
+
+
+def score(case: Case, asked: Sequence[str]) -> dict[str, float]:
+    pair, rig, rectification = case.pair, case.rig, case.rect
+    columns: dict[str, float] = {}
+    if "timing" in asked and case.fit:
+        columns["fit_s"] = warm_seconds(case.fit, case.first_fit_s)
+    features, board = None, pair.board if "row_error_board" in asked else None
+    if board is not None:
+        case.remarks["board"] = board.kind
+    if "row_error_features" in asked:
+        try:
+            features = pair.features(by_estimate=case.pose_is_estimated)
+        except PoseNotFound as failure:
+            case.remarks["no_features"] = str(failure)
+    columns |= measure(
+        rectification,
+        rig,
+        geometry="geometry" in asked,
+        true_matches=pair.true_matches if "row_error" in asked else None,
+        feature_matches=features,
+        board_matches=board.matches if board else None,
+    )
+    if "distortion" in asked:
+        columns |= distortion_columns(case.jacobians)
+    if case.pose_is_estimated:
+        estimate = pair.estimate
+        rotation_deg, direction_deg = estimate.difference_deg(rig)
+        kind = "error" if pair.knows_truth else "difference"
+        columns |= {
+            f"pose_rotation_{kind}_deg": rotation_deg,
+            f"pose_direction_{kind}_deg": direction_deg,
+            "pose_rotation_sigma_deg": estimate.rotation_sigma_deg,
+            "pose_direction_sigma_deg": estimate.direction_sigma_deg,
+            "pose_inliers": float(len(estimate.inliers.left)),
+            "pose_matches": float(estimate.given),
+        }
+        if not pair.knows_truth and (contradiction := estimate.contradiction(rig)):
+            case.remarks["contradiction"] = contradiction
+    if "energy" in asked:
+        columns["energy_convex_share"] = energy_convex_share(rectification)
+    if "reconstruction" in asked:
+        found = reconstruct(rectification, pair.images.left, pair.images.right)
+        columns |= reconstruction_scores(found, pair.truth)
+    if "timing" in asked:
+        _, columns["maps_s"] = timed(lambda: (rectification.maps("left"), rectification.maps("right")))
+        left, right = (
+            np.full((camera.height, camera.width, 3), 127, dtype=np.uint8)
+            for camera in (rectification.left.source, rectification.right.source)
+        )
+        _, columns["warp_s"] = timed(lambda: rectification.remap(left, right))
+        if case.pose_is_estimated:
+            columns["pose_s"] = pair.pose_seconds()
+            columns["total_s"] = columns["pose_s"] + columns["fit_s"] + columns["warp_s"]
+    return columns

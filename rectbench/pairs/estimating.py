@@ -1,86 +1,40 @@
-"""The pose of a pair as its own images tell it, estimated once and kept in the store."""
+"""The pose of a pair as its own images tell it, and how the store keeps it."""
 
 from __future__ import annotations
 
 import json
-from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
 
-from rectbench.errors import PoseNotFound
 from rectbench.images.stereo_pair import StereoPair
 from rectbench.matching import PoseEstimate, pose_from_images
-from rectbench.pairs.pairs import image_inputs, load_images, placed_rig
-from rectbench.pairs.spec import PairSpec
 from rectbench.rigs import Rig
-from rectbench.store.keys import Inputs, code_digest, derived_seed, versions
-from rectbench.store.store import Store
+from rectbench.store.keys import Inputs, code_digest, versions
 from rectbench.types import Images, Matches
 
-POSES = "poses"
 ESTIMATING_PACKAGES = ("numpy", "scipy", "opencv-contrib-python-headless")
-NUMBERS, REASON = "pose.npz", "reason.json"
 
 
-def estimate_from_images(pair: PairSpec, images: StereoPair) -> PoseEstimate:
-    """The estimate, made anew from the pair's images; raises PoseNotFound where they tell none."""
-    rig = placed_rig(pair)
-    seed = derived_seed("consensus", pair.scene, pair.rig, pair.motion, pair.seed)
-    # Of the true rig only the cameras are used: calibrations are known, the pose is not.
+def estimate_pose(rig: Rig, images: StereoPair, seed: int) -> PoseEstimate:
+    """The estimate, made anew; raises PoseNotFound, with the reason, where the images tell none.
+
+    Of the true rig only the cameras are used: calibrations are known, the pose is not.
+    """
     return pose_from_images(rig.left, rig.right, Images(images.left, images.right), seed=seed)
 
 
-@lru_cache(maxsize=1)
-def estimated_pose(pair: PairSpec, store: Store) -> PoseEstimate:
-    """The estimate of a pair, from the store where it is known; all methods of a pair share it.
-
-    Raises PoseNotFound, with the reason, where the images tell no pose.
-    """
-    inputs = _inputs(pair)
-    with store.making(POSES, inputs):
-        folder = store.read(POSES, inputs)
-        if folder is None:
-            try:
-                estimate = estimate_from_images(pair, load_images(pair, store))
-            except PoseNotFound as failure:
-                store.write_text(POSES, inputs, REASON, json.dumps({"reason": str(failure)}))
-                raise
-            store.write(POSES, inputs, lambda place: _save(estimate, place / NUMBERS))
-            return estimate
-    if (folder / REASON).is_file():
-        raise PoseNotFound(json.loads((folder / REASON).read_text(encoding="utf-8"))["reason"])
-    return _load(folder / NUMBERS)
-
-
-def pose_columns(estimate: PoseEstimate, truth: Rig) -> dict[str, float]:
-    """The columns of a row that tell how good the estimate is, and how good it believes to be."""
-    rotation_deg, direction_deg = estimate.difference_deg(truth)
+def estimate_inputs(image_inputs: Inputs) -> Inputs:
+    """All that shapes the estimate from images that these inputs shape."""
     return {
-        "pose_rotation_error_deg": rotation_deg,
-        "pose_direction_error_deg": direction_deg,
-        "pose_rotation_sigma_deg": estimate.rotation_sigma_deg,
-        "pose_direction_sigma_deg": estimate.direction_sigma_deg,
-        "pose_inliers": float(len(estimate.inliers.left)),
-        "pose_matches": float(estimate.given),
-    }
-
-
-def calibration_columns(estimate: PoseEstimate, calibrated: Rig) -> dict[str, float]:
-    """The same of photographs: how far the estimate is from the calibration; neither is the truth."""
-    columns = pose_columns(estimate, calibrated)
-    return {name.replace("_error_deg", "_difference_deg"): value for name, value in columns.items()}
-
-
-def _inputs(pair: PairSpec) -> Inputs:
-    return {
-        **image_inputs(pair),
+        **image_inputs,
         "estimating_code": code_digest(__name__),
         "estimating_versions": dict(versions(*ESTIMATING_PACKAGES)),
     }
 
 
-def _save(estimate: PoseEstimate, path: Path) -> None:
+def save_estimate(estimate: PoseEstimate, path: Path) -> None:
+    """Write an estimate as `.npz`."""
     np.savez(
         path,
         R_right_left=estimate.R_right_left,
@@ -94,7 +48,8 @@ def _save(estimate: PoseEstimate, path: Path) -> None:
     )
 
 
-def _load(path: Path) -> PoseEstimate:
+def load_estimate(path: Path) -> PoseEstimate:
+    """The estimate that `save_estimate` wrote, to the last bit."""
     with np.load(path, allow_pickle=False) as stored:
         return PoseEstimate(
             R_right_left=stored["R_right_left"],

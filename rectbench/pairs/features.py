@@ -6,7 +6,7 @@ import numpy as np
 
 from rectbench.images.stereo_pair import StereoPair
 from rectbench.matching import match_features
-from rectbench.matching.pose.consistent import WORKING_PIXELS
+from rectbench.matching.pose.consistent import SCORING_PIXELS
 from rectbench.rigs import Rig
 from rectbench.types import Matches
 from rectbench.warps import centre_resolution_px
@@ -21,7 +21,7 @@ def scored_features(images: StereoPair, rig: Rig) -> Matches:
     The distance is the angle between the right ray and the plane of the left one, times the pixels
     per radian at the centre. A rectifier never sees these matches.
     """
-    found = match_features(images.left, images.right, working_pixels=WORKING_PIXELS)
+    found = match_features(images.left, images.right, working_pixels=SCORING_PIXELS)
     rays_left, ok_left = rig.left.unproject(found.left)
     rays_right, ok_right = rig.right.unproject(found.right)
     normals = rays_left @ rig.essential_matrix.T

@@ -55,3 +55,8 @@ class PhotographedSpec(_Spec):
 
 
 PairSpec = Annotated[RenderedSpec | PhotographedSpec, Field(discriminator="kind")]
+
+ESTIMATED = "estimated"
+"""The pose that is estimated from the images themselves."""
+CALIBRATED = "calibrated"
+"""The pose as a calibration states it, of which nobody knows how exact it is: that of photographs."""

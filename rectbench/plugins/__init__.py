@@ -1,1 +1,1 @@
-"""What a rectifier, a scene, a metric and a figure are, and the loader of all of them."""
+"""Contracts of rectifiers and scenes, what a third party fills in. Imports rendering, warps and below."""

@@ -5,14 +5,14 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from scipy.linalg import rq
 
 from rectbench.cameras import Camera
 from rectbench.errors import Unsupported
-from rectbench.plugins.rectifier import Problem, Rectifier
+from rectbench.plugins.rectifier import OptionsT, Problem, Rectifier
 from rectbench.rigs import Rig
 from rectbench.types import FloatArray, Matches
 from rectbench.warps.frame import centre_resolution_px, refuse_epipole_in_view
@@ -31,6 +31,12 @@ class PinholeView:
     Each image looks along its camera's axis. Both have the rig's mean resolution at the centre, the
     principal point in the middle and the larger camera's size, so that a method that assumes one
     focal length or a centred principal point is served; the field of view is stated in the notes.
+
+    >>> import rectbench as rb
+    >>> from rectbench.plugins.rectifier import pose_problem
+    >>> view = rb.PinholeView.of(pose_problem(rb.load_rig("t265")))
+    >>> view.size, round(view.fov_deg)
+    ((848, 800), 112)
     """
 
     matches: Matches
@@ -83,18 +89,26 @@ def _ideal_pinhole(rig: Rig) -> Camera:
     return Camera("pinhole", size, {"fx": focal, "fy": focal, "cx": (width - 1) / 2, "cy": (height - 1) / 2})
 
 
-class HomographyRectifier(Rectifier):
-    """Base of the methods that find a pair of homographies from matches between pinhole images."""
+class HomographyRectifier(Rectifier[OptionsT]):
+    """Base of the methods that find a pair of homographies from matches between pinhole images.
+
+    >>> import numpy as np
+    >>> import rectbench as rb
+    >>> class Identity(rb.HomographyRectifier):
+    ...     name = "identity"
+    ...     def homographies(self, view, options):
+    ...         return np.eye(3), np.eye(3), {"matches": float(len(view.matches.left))}
+    """
 
     needs: ClassVar[frozenset[str]] = frozenset({"matches"})
 
     @abstractmethod
     def homographies(
-        self, view: PinholeView, options: Any
+        self, view: PinholeView, options: OptionsT
     ) -> tuple[FloatArray, FloatArray, Mapping[str, float | str]]:
         """H_left, H_right [3, 3] from undistorted to rectified pixels, and the method's notes."""
 
-    def fit(self, problem: Problem, options: Any) -> Rectification:
+    def fit(self, problem: Problem, options: OptionsT) -> Rectification:
         """The homographies of the undistorted views, composed with the lenses."""
         refuse_epipole_in_view(problem.rig)
         view = PinholeView.of(problem)

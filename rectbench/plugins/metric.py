@@ -121,6 +121,10 @@ class Known(Protocol):
         """The images, rendered or photographed."""
 
     @property
+    def knows_truth(self) -> bool:
+        """Whether anybody knows the truth about the pair."""
+
+    @property
     def truth(self) -> Truth:
         """The truth about a rendered pair. Raises InvalidInput for photographs, whose truth nobody knows."""
 
@@ -143,7 +147,7 @@ class Known(Protocol):
         """
 
     def pose_seconds(self) -> float:
-        """Seconds from the two images, in memory, to their pose."""
+        """Seconds from the two images, in memory, to their pose, warm."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,10 +6,11 @@ import inspect
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Generic, get_args
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
+from typing_extensions import TypeVar
 
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
@@ -24,19 +25,39 @@ from rectbench.warps.warp import Warp
 
 
 class Options(BaseModel):
-    """Base of a rectifier's options: typed, checked, immutable; no unknown ones."""
+    """Base of a rectifier's options: typed, checked, immutable; no unknown ones.
+
+    >>> import rectbench as rb
+    >>> class ScaleOptions(rb.Options):
+    ...     scale: float = rb.option(1.0, "pixels of output for one of source", gt=0)
+    >>> ScaleOptions(scale=2)
+    ScaleOptions(scale=2.0)
+    """
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
 
 def option(default: Any, description: str, **limits: Any) -> Any:
-    """One option: its default, what it does, and its limits (`ge`, `gt`, `le`, `lt`)."""
+    """One option: its default, what it does, and its limits (`ge`, `gt`, `le`, `lt`).
+
+    See `Options` for an example.
+    """
     return Field(default, description=description, **limits)
 
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """All that a rectifier may know; never the truth."""
+    """All that a rectifier may know; never the truth.
+
+    >>> import rectbench as rb
+    >>> from rectbench.plugins.rectifier import pose_problem
+    >>> problem = pose_problem(rb.load_rig("t265"))
+    >>> problem.pixels_left.shape, problem.matches.left.shape
+    ((489, 2), (1999, 2))
+    >>> left, right = problem.angle_warps()
+    >>> left.forward(problem.pixels_left[:1]).round(2)  # γ and β, radians
+    array([[-0.36, -1.38]])
+    """
 
     rig: Rig
     """The rig as calibrated or estimated, which may be off."""
@@ -113,25 +134,54 @@ def matches_from_pose(rig: Rig, count: int = 2000) -> Matches:
     return Matches(pixels[seen], pixels_right[seen])
 
 
-class Rectifier(ABC):
+OptionsT = TypeVar("OptionsT", bound=Options, default=Any)
+
+
+class Rectifier(ABC, Generic[OptionsT]):
     """A stereo rectification method: one file, one class.
 
     The class's docstring says in its first line what the method is. `needs` says what it works from:
     "pose" for a calibrated method, "matches" for one that finds the geometry by itself.
+
+    A method's options are a subclass of `Options`, named in brackets, so that a type checker holds `fit` to
+    them, or nested in the class under the name `Options`.
+
+    >>> import rectbench as rb
+    >>> class ScaleOptions(rb.Options):
+    ...     scale: float = rb.option(1.0, "pixels of output for one of source", gt=0)
+    >>> class Cylinder(rb.Rectifier[ScaleOptions]):
+    ...     name = "cylinder"
+    ...     def fit(self, problem: rb.Problem, options: ScaleOptions) -> rb.Rectification:
+    ...         f = options.scale * rb.centre_resolution_px(problem.rig)
+    ...         u, v = rb.Radial("cylindrical", f, 0.0), rb.Radial("equidistant", f, 0.0)
+    ...         return rb.Rectification.from_profiles(problem.rig, u, u, v)
+    >>> Cylinder.Options().scale
+    1.0
     """
 
     name: ClassVar[str]
     references: ClassVar[tuple[str, ...]] = ()
     needs: ClassVar[frozenset[str]] = frozenset({"pose"})
-    Options: ClassVar[type[Options]] = Options
+    Options: type[OptionsT] = Options  # type: ignore[assignment]  # the variable's default is Any
+
+    def __init_subclass__(cls) -> None:
+        super().__init_subclass__()
+        bases = vars(cls).get("__orig_bases__", ())
+        in_brackets: list[Any] = [of for base in bases for of in get_args(base) if _is_options(of)]
+        if in_brackets and "Options" not in vars(cls):
+            cls.Options = in_brackets[0]
 
     @abstractmethod
-    def fit(self, problem: Problem, options: Any) -> Rectification:
+    def fit(self, problem: Problem, options: OptionsT) -> Rectification:
         """The rectification of the rig; raises Unsupported, with the reason, where there is none."""
 
 
+def _is_options(value: object) -> bool:
+    return inspect.isclass(value) and issubclass(value, Options)
+
+
 def _described(value: Any) -> Described[Rectifier] | None:
-    """A rectifier, or the only instance of a class of them."""
+    """A rectifier: an instance, or a class of which one is made."""
     if inspect.isclass(value) and issubclass(value, Rectifier):
         if inspect.isabstract(value) and "name" not in vars(value):
             return None  # a base class for the file's own use
@@ -141,7 +191,7 @@ def _described(value: Any) -> Described[Rectifier] | None:
     name = getattr(value, "name", None)
     if not isinstance(name, str) or not name:
         raise InvalidInput(f"{type(value).__name__}.name is {name!r}; expected the method's name")
-    if not (inspect.isclass(value.Options) and issubclass(value.Options, Options)):
+    if not _is_options(value.Options):
         raise InvalidInput(
             f"{type(value).__name__}.Options is {value.Options!r}; expected a subclass of Options"
         )

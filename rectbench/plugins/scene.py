@@ -33,7 +33,15 @@ class Scene:
 
 
 def scene(name: str) -> Callable[[Callable[[int], World]], Scene]:
-    """Decorate a function of a seed, with a docstring, that builds a `World`; it becomes a `Scene`."""
+    """Decorate a function of a seed, with a docstring, that builds a `World`; it becomes a `Scene`.
+
+    >>> import rectbench as rb
+    >>> @rb.scene("void")
+    ... def build(seed: int) -> rb.World:
+    ...     'Nothing at all.'
+    >>> build.name, build.summary
+    ('void', 'Nothing at all.')
+    """
 
     def decorate(builder: Callable[[int], World]) -> Scene:
         if not name or name != name.strip():

@@ -27,12 +27,14 @@ class Kind(Generic[T]):
     name : plural, as in `rectbench list methods` and the entry points' group `rectbench.methods`.
     singular : as in errors.
     expected : what a plugin's file has to hold; ends a sentence of an error.
-    package : the package whose files hold the built-in ones; a file that holds none is no fault there
-        where `is_shared`.
+    package : the package whose files hold the built-in ones, those of its sub-packages included; a file
+        that holds none is no fault there where `is_shared`.
     described : the plugin that a value of a module is, None for any other value. Raises InvalidInput for one
         that is meant as a plugin and is broken.
     by_suffix : how a file of another suffix than `.py` is read, such as a scene in Mitsuba's `.xml`: the
         plugin, and the files that shape it.
+    is_keyed : whether keys of results need the plugins' digests; of calibration formats they do not, since
+        the numbers that are read from a file are in the keys themselves.
     """
 
     name: str
@@ -42,6 +44,7 @@ class Kind(Generic[T]):
     described: Callable[[Any], Described[T] | None]
     by_suffix: Mapping[str, Callable[[Path], tuple[Described[T], list[Path]]]] = field(default_factory=dict)
     is_shared: bool = False
+    is_keyed: bool = True
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,5 +57,5 @@ class Plugin(Generic[T]):
     path: Path
     """The file it comes from."""
     digest: str
-    """SHA-256 of all that shapes it, for keys."""
+    """SHA-256 of all that shapes it, for keys; empty where its kind is not keyed."""
     value: T

@@ -1,8 +1,8 @@
 """The one loader of plugins, wherever they come from.
 
-Built-ins are the files of a kind's package; installed packages announce theirs as entry points of the group
-`rectbench.<kind>`; and wherever a name is accepted, so is the path of a file. All of them see the same public
-names and get the same treatment.
+Built-ins are the files of a kind's package and its sub-packages; installed packages announce theirs as entry
+points of the group `rectbench.<kind>`; and wherever a name is accepted, so is the path of a file. All of them
+see the same public names and get the same treatment.
 """
 
 from __future__ import annotations
@@ -20,8 +20,6 @@ from functools import cache
 from pathlib import Path
 from types import ModuleType
 from typing import Any, Generic, TypeVar
-
-from pydantic import ValidationError
 
 from rectbench.errors import InvalidInput, UnknownName
 from rectbench.registry.kind import Described, Kind, Plugin
@@ -116,23 +114,27 @@ def forget_plugins() -> None:
 @cache
 def _loaded(kind: Kind[Any]) -> Registry[Any]:
     found: Registry[Any] = Registry(kind)
-    for path in _built_in_files(kind.package):
-        found.add(str(path), lambda path=path: _built_in(kind, path))  # type: ignore[misc]
+    for module, path in _built_in_files(kind.package):
+        found.add(str(path), lambda module=module, path=path: _built_in(kind, module, path))  # type: ignore[misc]
     for point in importlib.metadata.entry_points(group=f"rectbench.{kind.name}"):
         place = f"{point.group}:{point.name} = {point.value}"
         found.add(place, lambda point=point: _announced(kind, point))  # type: ignore[misc]
     return found
 
 
-def _built_in_files(package: str) -> list[Path]:
+def _built_in_files(package: str) -> Iterator[tuple[str, Path]]:
+    """Module and file of all in a package and its sub-packages that is not private, by path."""
     spec = importlib.util.find_spec(package)
-    folders = [Path(folder) for folder in (spec.submodule_search_locations or [])] if spec else []
-    return sorted(path for folder in folders for path in folder.glob("*.py") if not path.stem.startswith("_"))
+    for folder in (spec.submodule_search_locations or []) if spec else []:
+        for path in sorted(Path(folder).rglob("*.py")):
+            names = path.relative_to(folder).with_suffix("").parts
+            if (path.parent / "__init__.py").is_file() and not any(name.startswith("_") for name in names):
+                yield ".".join((package, *names)), path
 
 
-def _built_in(kind: Kind[T], path: Path) -> list[Plugin[T]]:
-    module = importlib.import_module(f"{kind.package}.{path.stem}")
-    plugins = _plugins_in(kind, module, path, plugin_digest(path))
+def _built_in(kind: Kind[T], module: str, path: Path) -> list[Plugin[T]]:
+    loaded = importlib.import_module(module)
+    plugins = _plugins_in(kind, loaded, path, plugin_digest(path) if kind.is_keyed else "")
     return plugins if kind.is_shared else _require(kind, plugins)
 
 
@@ -233,6 +235,8 @@ def _clash(rivals: list[Plugin[T]]) -> str:
 
 def _reason(error: BaseException) -> str:
     """One line: what went wrong, and on which line of the plugin."""
+    from pydantic import ValidationError  # a tenth of a second, which only errors need
+
     text = " ".join(str(error).split())
     if isinstance(error, ValidationError):  # of a report, whose own lines are not to blame
         return "; ".join(map(_fault, error.errors(include_url=False)))

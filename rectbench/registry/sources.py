@@ -10,8 +10,9 @@ from pathlib import Path
 from rectbench.store.closure import PACKAGE, source_closure
 from rectbench.store.keys import digest, file_digest
 
-_VERBS = "rectbench.api"
-"""The module of the verbs. What calls one may run any part of rectbench, and any built-in plugin."""
+_FAR_REACHING = {"rectbench.api", "rectbench.calibrations"}
+"""The modules of the verbs, and of reading files. What calls a verb may run any part of rectbench and any
+built-in plugin, and what reads a file any of the formats, which no import leads to."""
 
 
 def plugin_digest(path: Path, package_root: Path | None = None) -> str:
@@ -80,9 +81,10 @@ def _public_names(file: Path) -> frozenset[str]:
 
 @cache
 def _digests_of(names: frozenset[str]) -> str:
-    """Of the sources behind public names; a verb of rectbench stands for all of it."""
+    """Of the sources behind public names; one that reaches far stands for all of rectbench."""
     modules = {_homes()[name] for name in names if name in _homes()}
-    files = sorted(PACKAGE.rglob("*.py")) if _VERBS in modules else source_closure(*sorted(modules))
+    everything = _FAR_REACHING & modules
+    files = sorted(PACKAGE.rglob("*.py")) if everything else source_closure(*sorted(modules), root=PACKAGE)
     return digest({str(file.relative_to(PACKAGE)): file_digest(file) for file in files})
 
 

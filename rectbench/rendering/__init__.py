@@ -1,4 +1,4 @@
-"""Worlds and what they are built from, the Mitsuba sensor for any camera, images and their truth."""
+"""Worlds, the Mitsuba sensor for any camera, images and their truth. Imports warps and what is below."""
 
 from rectbench.rendering import blocks
 

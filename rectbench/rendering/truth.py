@@ -17,13 +17,14 @@ from zipfile import BadZipFile
 import numpy as np
 from numpy.typing import NDArray
 
-from rectbench.calibrations.native import dump, read_native, rig_fields
+from rectbench.calibrations.formats.native import read_native, rig_fields
 from rectbench.cameras import Camera
 from rectbench.cameras.projection import BoolArray
 from rectbench.errors import InvalidInput
 from rectbench.rendering.variant import mitsuba
 from rectbench.rigs.rig import Rig
 from rectbench.types import FloatArray
+from rectbench.yaml_text import yaml_text
 
 SIDES = ("left", "right")
 
@@ -33,6 +34,16 @@ class Truth:
     """Depth and visibility at the pixel centres of both cameras, and all that follows from them.
 
     Raises InvalidInput for arrays that are not of the cameras' sizes.
+
+    >>> import numpy as np
+    >>> import rectbench as rb
+    >>> camera = rb.Camera("pinhole", (160, 120), {"fx": 120, "fy": 120, "cx": 79.5, "cy": 59.5})
+    >>> rig = rb.Rig(camera, camera, np.eye(3), [-0.1, 0, 0])
+    >>> depth, seen = np.full((120, 160), 2.0), np.ones((120, 160), bool)
+    >>> truth = rb.Truth(rig, depth, depth, seen, seen)
+    >>> px_left, px_right = truth.matches(100)
+    >>> px_left.shape, bool(np.allclose(px_left[:, 1], px_right[:, 1]))
+    ((100, 2), True)
     """
 
     rig: Rig
@@ -122,7 +133,7 @@ class Truth:
         if derived:
             arrays |= {f"{name}_{side}": a for side, layers in self._layers() for name, a in layers.items()}
         with Path(path).open("wb") as file:
-            np.savez(file, rig=np.array(dump(rig_fields(self.rig))), **arrays)
+            np.savez(file, rig=np.array(yaml_text(rig_fields(self.rig))), **arrays)
 
     @classmethod
     def load(cls, path: str | Path) -> Truth:

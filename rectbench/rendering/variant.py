@@ -1,6 +1,6 @@
 """Which Mitsuba variant renders, and the one place that imports Mitsuba and Dr.Jit for the rest.
 
-Both are handed out as Any: Mitsuba's types hang on the variant, which is known only at run time.
+Both are handed out as Any: Mitsuba's types depend on the variant, which is known only at run time.
 """
 
 from __future__ import annotations

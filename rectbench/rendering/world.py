@@ -18,7 +18,13 @@ Colour = tuple[float, float, float]
 
 @dataclass(frozen=True, eq=False)
 class Material:
-    """A surface: `reflectance` is one colour, or texels [H, W, 3] float32 that repeat over uv."""
+    """A surface: `reflectance` is one colour, or texels [H, W, 3] float32 that repeat over uv.
+
+    >>> import numpy as np
+    >>> import rectbench as rb
+    >>> varnish = rb.Material((0.4, 0.25, 0.1), glossy=True)
+    >>> stripes = rb.Material(np.float32([[[0.1, 0.1, 0.1], [0.8, 0.8, 0.8]]]))  # texels [1, 2, 3]
+    """
 
     reflectance: Colour | NDArray[np.float32]
     glossy: bool = False
@@ -27,7 +33,16 @@ class Material:
 
 @dataclass(frozen=True, eq=False)
 class Mesh:
-    """Triangles of one material."""
+    """Triangles of one material.
+
+    >>> import numpy as np
+    >>> import rectbench as rb
+    >>> corners = np.array([[-1, 3, 0], [1, 3, 0], [1, 3, 2], [-1, 3, 2]], float)
+    >>> faces, uv = np.array([[0, 1, 2], [0, 2, 3]]), np.array([[0, 0], [1, 0], [1, 1], [0, 1]], float)
+    >>> wall = rb.Mesh("wall", corners, faces, uv, rb.Material((0.5, 0.5, 0.5)))
+    >>> wall.faces.shape
+    (2, 3)
+    """
 
     name: str
     vertices: FloatArray
@@ -44,6 +59,13 @@ class Instances:
     """Meshes repeated at many places without being copied.
 
     Few places of large meshes: the renderer compiles code for each placement, seconds for hundreds.
+
+    >>> import numpy as np
+    >>> import rectbench as rb
+    >>> post = rb.blocks.meshes([rb.blocks.box(0.1, 0.1, 1.0).of(rb.blocks.concrete(seed=0))])
+    >>> places = np.stack([rb.blocks.placement(x, 5.0) for x in (-1.0, 0.0, 1.0)])
+    >>> rb.Instances("posts", post, places).placements.shape
+    (3, 4, 4)
     """
 
     name: str
@@ -54,7 +76,12 @@ class Instances:
 
 @dataclass(frozen=True)
 class Sun:
-    """A clear sky with the sun in it."""
+    """A clear sky with the sun in it.
+
+    >>> import rectbench as rb
+    >>> rb.Sun(direction=(0.0, -1.0, 1.0)).turbidity  # at 45° in the south
+    3.5
+    """
 
     direction: tuple[float, float, float] = (-0.5, -0.6, 0.65)
     """Towards the sun, any length."""
@@ -63,7 +90,12 @@ class Sun:
 
 @dataclass(frozen=True)
 class Lamp:
-    """A rectangular lamp that shines down from `centre`."""
+    """A rectangular lamp that shines down from `centre`.
+
+    >>> import rectbench as rb
+    >>> rb.Lamp(centre=(0.0, 4.0, 2.7), size_m=(0.6, 1.8), radiance=(13.0, 12.0, 10.0)).size_m
+    (0.6, 1.8)
+    """
 
     centre: tuple[float, float, float]
     size_m: tuple[float, float]
@@ -73,7 +105,14 @@ class Lamp:
 
 @dataclass(frozen=True, eq=False)
 class World:
-    """Everything there is to see, the light on it, and where a rig stands in it."""
+    """Everything there is to see, the light on it, and where a rig stands in it.
+
+    >>> import rectbench as rb
+    >>> floor = rb.blocks.floor((-5, 5), (-5, 20)).of(rb.blocks.paving(seed=0))
+    >>> world = rb.World(rb.blocks.meshes([floor]), rb.blocks.stand(0.0, 0.0, z=1.6), sun=rb.Sun())
+    >>> world.world_from_left[:3, 2].round(3)  # the camera looks to the north
+    array([0., 1., 0.])
+    """
 
     meshes: tuple[Mesh, ...]
     world_from_left: FloatArray

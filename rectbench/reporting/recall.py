@@ -4,32 +4,19 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from contextlib import suppress
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from rectbench.errors import InvalidInput, PoseNotFound
-from rectbench.experiments.execution.cells import cell_inputs, corners_of_board, feature_matches, problem_of
+from rectbench.errors import InvalidInput
+from rectbench.experiments.execution.cells import cell_inputs, problem_of
 from rectbench.experiments.tasks import IDENTITY, CellTask
-from rectbench.images.stereo_pair import StereoPair
-from rectbench.pairs.pairs import image_inputs, load_images, load_truth, placed_rig
-from rectbench.pairs.spec import PhotographedSpec
+from rectbench.pairs.pair import Pair
 from rectbench.plugins.fitting import checked_options, fit
 from rectbench.plugins.rectifier import METHODS
 from rectbench.registry import registry
-from rectbench.rendering.truth import Truth
-from rectbench.rigs import Rig
 from rectbench.runs.record import RUN_FILE
 from rectbench.store.keys import digest
-from rectbench.store.store import Store
-from rectbench.types import Matches
 from rectbench.warps import Rectification
-
-SHOWN_MATCHES = 2000
-"""True correspondences that pictures choose from."""
 
 
 def read_tasks(run_dir: Path) -> dict[tuple[Any, ...], CellTask]:
@@ -47,45 +34,12 @@ def identity_of(row: Mapping[str, Any]) -> tuple[Any, ...]:
     return tuple(row[name] for name in IDENTITY)
 
 
-@dataclass(frozen=True, eq=False)
-class KnownPair:
-    """The images under a cell, and what is known of them."""
-
-    images: StereoPair
-    rig: Rig
-    """The true rig; of photographs the calibrated one."""
-    matches: Matches
-    """Pixels [N, 2] each that correspond: true ones, or of photographs those found in them."""
-    truth: Truth | None
-    """None of photographs."""
-
-
-def recalled_pair(task: CellTask, store: Store | None = None) -> KnownPair:
-    """The images of a cell and what is known of them; what the store has lost is rendered again."""
-    store, pair = store or Store.default(), task.pair
-    images = load_images(pair, store)
-    if isinstance(pair, PhotographedSpec):
-        return KnownPair(images, placed_rig(pair), _found_matches(pair, store), None)
-    truth = load_truth(pair, store)
-    return KnownPair(images, truth.rig, Matches(*truth.matches(SHOWN_MATCHES, seed=0)), truth)
-
-
-def _found_matches(pair: PhotographedSpec, store: Store) -> Matches:
-    """The matches that agree on a pose, and the corners of a board, as far as there are any."""
-    found = [] if (board := corners_of_board(pair, store)) is None else [board.matches]
-    with suppress(PoseNotFound):
-        found.append(feature_matches(pair, False, store))
-    sides = zip(*found, strict=True) if found else ([np.empty((0, 2))], [np.empty((0, 2))])
-    return Matches(*(np.concatenate(side) for side in sides))
-
-
-def recalled_rectification(task: CellTask, store: Store | None = None) -> Rectification:
+def recalled_rectification(task: CellTask, pair: Pair) -> Rectification:
     """What the cell's method made of it, fitted again."""
     method = registry(METHODS).get(task.method_source)
-    problem = problem_of(task, store or Store.default())
-    return fit(method, problem, checked_options(method, task.options))
+    return fit(method, problem_of(task, pair), checked_options(method, task.options))
 
 
-def recalled_version(task: CellTask) -> str:
+def recalled_version(task: CellTask, pair: Pair) -> str:
     """Changes with whatever changes the cell's images, truth or rectification."""
-    return digest([cell_inputs(task), image_inputs(task.pair)])
+    return digest([cell_inputs(task, pair), pair.image_inputs])

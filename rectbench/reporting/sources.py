@@ -15,11 +15,12 @@ from numpy.typing import NDArray
 from rectbench.errors import InvalidInput, InvalidResult, RectbenchError
 from rectbench.experiments.tasks import CellTask
 from rectbench.metrics import Jacobians, distortion, distortion_of
-from rectbench.pairs.spec import PairSpec
+from rectbench.pairs.opening import open_pair
+from rectbench.pairs.pair import Pair
 from rectbench.reporting import recall
-from rectbench.reporting.recall import KnownPair
 from rectbench.rigs import Rig
 from rectbench.runs.run import Result, Run
+from rectbench.store.store import Store
 from rectbench.types import FloatArray
 from rectbench.warps import Rectification
 
@@ -55,7 +56,7 @@ class Sources:
     version : changes with whatever changes those answers while the cell's row stays the same.
     """
 
-    pair: Callable[[Result], KnownPair]
+    pair: Callable[[Result], Pair]
     rectification: Callable[[Result], Rectification]
     distortion: Callable[[Rectification, Rig, Side, FloatArray], FloatArray]
     reconstruction: Callable[[Result], Cloud]
@@ -89,8 +90,9 @@ class _Recalled:
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
+        self._store = Store.default()
         self._fitted: dict[Identity, Rectification] = {}
-        self._pair: tuple[PairSpec, KnownPair] | None = None
+        self._pair: Pair | None = None
 
     @cached_property
     def _tasks(self) -> dict[Identity, CellTask]:
@@ -102,16 +104,19 @@ class _Recalled:
             raise InvalidInput(f"{self._folder / 'run.json'} does not plan {result.method} on {result.pair}")
         return task
 
-    def pair(self, result: Result) -> KnownPair:
-        task = self._task(result)
-        if self._pair is None or self._pair[0] != task.pair:
-            self._pair = task.pair, recall.recalled_pair(task)
-        return self._pair[1]
+    def pair(self, result: Result) -> Pair:
+        return self._opened(self._task(result))
+
+    def _opened(self, task: CellTask) -> Pair:
+        if self._pair is None or self._pair.spec != task.pair:
+            self._pair = open_pair(task.pair, self._store)
+        return self._pair
 
     def rectification(self, result: Result) -> Rectification:
         key = recall.identity_of(result.row)
         if key not in self._fitted:
-            rectification = recall.recalled_rectification(self._task(result))
+            task = self._task(result)
+            rectification = recall.recalled_rectification(task, self._opened(task))
             _require_same(rectification, result)
             self._fitted[key] = rectification
         return self._fitted[key]
@@ -124,7 +129,8 @@ class _Recalled:
 
     def version(self, result: Result) -> str:
         try:
-            return recall.recalled_version(self._task(result))
+            task = self._task(result)
+            return recall.recalled_version(task, self._opened(task))
         except RectbenchError as error:  # a plugin or a rig that is not on this machine
             return str(error)
 

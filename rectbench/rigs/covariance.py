@@ -28,6 +28,8 @@ from rectbench.cameras.sensitivity import parameter_names, with_changes
 from rectbench.errors import InvalidInput, UnknownName
 from rectbench.rigs.rig import Rig
 from rectbench.types import FloatArray
+from rectbench.writing import replace_files
+from rectbench.yaml_text import yaml_text
 
 ROTATION = ("pose.rx", "pose.ry", "pose.rz")
 TRANSLATION = ("pose.tx", "pose.ty", "pose.tz")
@@ -53,6 +55,13 @@ class RigCovariance:
     source : where it comes from; prose.
 
     Raises InvalidInput for names that are none or twice there, and for a matrix that is no covariance.
+
+    >>> import rectbench as rb
+    >>> sure = rb.RigCovariance.from_sigmas(rb.load_rig("t265"), focal_px=0.3, parameters={"right.k1": 0.001})
+    >>> sure.uncertain
+    ('left.fx', 'left.fy', 'right.fx', 'right.fy', 'right.k1')
+    >>> sure.sigma("right.k1")
+    0.001
     """
 
     parameters: tuple[str, ...]
@@ -167,12 +176,19 @@ class RigCovariance:
         return moved(rig, dict(zip(self.parameters, step.tolist(), strict=True)))
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write it as YAML, which `load_covariance` reads."""
-        from rectbench.calibrations.native import dump
-        from rectbench.calibrations.writing import replace_files
+        """Write it as YAML, which `load_covariance` reads. Raises InvalidInput where that cannot be done.
 
+        >>> import tempfile
+        >>> import rectbench as rb
+        >>> rig = rb.load_rig("t265")
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     rb.RigCovariance.from_sigmas(rig, rotation_deg=0.1).save(f"{folder}/covariance.yaml")
+        ...     rb.load_covariance(f"{folder}/covariance.yaml", rig).sigma("pose.rx").__round__(6)
+        0.001008
+        """
         content = {"parameters": list(self.parameters), "covariance": self.matrix.tolist()}
-        replace_files({Path(path): dump({"source": self.source, **content} if self.source else content)})
+        text = yaml_text({"source": self.source, **content} if self.source else content)
+        replace_files({Path(path): text}, InvalidInput)
 
 
 def moved(rig: Rig, change: Mapping[str, float]) -> Rig:

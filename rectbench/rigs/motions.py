@@ -49,7 +49,7 @@ class Motion:
 
 
 def seeded(purpose: str, seed: int) -> np.random.Generator:
-    """A generator that hangs on `purpose` and `seed` alone, the same on every machine."""
+    """A random generator that depends on `purpose` and `seed` alone, the same on every machine."""
     digest = hashlib.blake2b(f"{purpose}:{seed}".encode(), digest_size=16).digest()
     return np.random.default_rng(int.from_bytes(digest, "big"))
 

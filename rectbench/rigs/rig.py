@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -22,6 +22,14 @@ EXACT_ROTATION = 1e-14
 """Below this RᵀR - 1 is float64 rounding, and the matrix is kept to the last bit."""
 
 
+class RigWriter(Protocol):
+    """What writes a rig to a file, see `Rig.save`."""
+
+    def __call__(self, rig: Rig, path: str | os.PathLike[str], format: str) -> tuple[Path, ...]:
+        """The files written."""
+        ...
+
+
 @dataclass(frozen=True, eq=False)
 class Rig:
     """A stereo rig: X_right = R_right_left X_left + t_right_left, metres.
@@ -36,7 +44,15 @@ class Rig:
     source : where the numbers come from, and their licence; prose.
 
     Raises InvalidInput for a matrix that is no rotation, a zero baseline, NaN or infinity.
+
+    >>> import rectbench as rb
+    >>> lens = rb.Camera("equidistant", (800, 800), {"fx": 250, "fy": 250, "cx": 399.5, "cy": 399.5})
+    >>> rb.Rig(lens, lens, R_right_left=np.eye(3), t_right_left=[-0.1, 0, 0]).baseline_m
+    0.1
     """
+
+    writer: ClassVar[RigWriter]
+    """Set by `rectbench.rigs.saving`, which stands above this file as it knows the formats."""
 
     left: Camera
     right: Camera
@@ -64,47 +80,96 @@ class Rig:
 
     @property
     def baseline_m(self) -> float:
-        """Distance between the two centres, metres."""
+        """Distance between the two centres, metres.
+
+        >>> import rectbench as rb
+        >>> round(rb.load_rig("t265").baseline_m, 3)
+        0.064
+        """
         return float(np.linalg.norm(self.t_right_left))
 
     @property
     def centre_right_in_left(self) -> FloatArray:
-        """The right camera's centre in left coordinates, metres [3]."""
+        """The right camera's centre in left coordinates, metres [3].
+
+        >>> import rectbench as rb
+        >>> rb.load_rig("t265").centre_right_in_left.round(3)
+        array([ 0.064,  0.   , -0.   ])
+        """
         centre: FloatArray = -self.R_right_left.T @ self.t_right_left
         return centre
 
     @property
     def essential_matrix(self) -> FloatArray:
-        """E with ray_rightᵀ E ray_left = 0 for corresponding rays [3, 3]."""
+        """E with ray_rightᵀ E ray_left = 0 for corresponding rays [3, 3].
+
+        >>> import rectbench as rb
+        >>> rig = rb.load_rig("t265")
+        >>> point_left = np.array([0.3, -0.2, 1.0])
+        >>> point_right = rig.right_from_left(point_left)
+        >>> bool(abs(point_right @ rig.essential_matrix @ point_left) < 1e-15)
+        True
+        """
         x, y, z = self.t_right_left
         cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
         essential: FloatArray = cross @ self.R_right_left
         return essential
 
     def right_from_left(self, points_left: ArrayLike) -> FloatArray:
-        """Points [..., 3] of the left camera's frame in the right camera's, metres."""
+        """Points [..., 3] of the left camera's frame in the right camera's, metres.
+
+        >>> import rectbench as rb
+        >>> rb.load_rig("t265").right_from_left([0.0, 0.0, 1.0]).round(3)
+        array([-0.07 ,  0.004,  1.   ])
+        """
         points: FloatArray = (
             as_points(points_left, 3, "points_left") @ self.R_right_left.T + self.t_right_left
         )
         return points
 
     def scaled(self, factor: float) -> Rig:
-        """The same rig with images `factor` times as large."""
+        """The same rig with images `factor` times as large.
+
+        >>> import rectbench as rb
+        >>> rb.load_rig("t265").scaled(0.5).left.size
+        (424, 400)
+        """
         return replace(self, left=self.left.scaled(factor), right=self.right.scaled(factor))
 
     def within(self, max_angle_deg: float) -> Rig:
-        """The same rig, its lenses showing nothing beyond this angle from their axes (the image circle)."""
+        """The same rig, its lenses showing nothing beyond this angle from their axes (the image circle).
+
+        >>> import rectbench as rb
+        >>> rb.load_rig("t265").within(75).right.max_angle_deg
+        75.0
+        """
         left, right = (replace(camera, max_angle_deg=max_angle_deg) for camera in (self.left, self.right))
         return replace(self, left=left, right=right)
 
     def save(self, path: str | os.PathLike[str], format: str = "native") -> tuple[Path, ...]:
-        """Write the rig's calibration as the project's own YAML, or in another format.
+        """Write the rig's calibration; what was there before stays until all of it is written.
 
-        Returns the files; `load_rig(path)` reads the rig back. See `rectbench.calibrations.writing.save_rig`.
+        Parameters
+        ----------
+        path : the file; for a format of several files the folder that holds them, which is made where there
+            is none. OpenCV's suffix, .yml, .xml or .json, says which language.
+        format : "native" is the project's own YAML; `rectbench list formats` shows which others are written.
+
+        Returns the files. `load_rig(path)` gives the rig back to rounding, exactly for "native"; a camera may
+        then bear another name for the same lens, such as kannala-brandt for an equidistant one. What a
+        format has no place for beside the lenses, `max_angle_deg` above all, is logged as a warning.
+
+        Raises UnknownName for a format that is not written; InvalidInput in one line for a camera that the
+        format cannot hold exactly, with the formats that can, and for a path that cannot be written.
+
+        >>> import tempfile
+        >>> import rectbench as rb
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     (chain,) = rb.load_rig("t265").save(f"{folder}/camchain.yaml", format="kalibr")
+        ...     rb.load_rig(chain).left.model
+        'kannala-brandt'
         """
-        from rectbench.calibrations.writing import save_rig
-
-        return save_rig(self, path, format)
+        return Rig.writer(self, path, format)
 
 
 @np.errstate(over="ignore", invalid="ignore")

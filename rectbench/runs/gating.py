@@ -15,10 +15,10 @@ from typing import Any, Literal
 import pandas as pd
 
 from rectbench.errors import InvalidInput, UnknownName
-from rectbench.runs.record import read_facts, read_results
 from rectbench.experiments.spec import ESTIMATED, REPORTS
 from rectbench.experiments.tasks import IDENTITY
 from rectbench.registry import registry
+from rectbench.runs.record import read_facts, read_results
 
 KEY = [name for name in IDENTITY if name != "report"]
 

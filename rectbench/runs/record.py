@@ -69,7 +69,9 @@ def table_of(plan: Plan, outcomes: Sequence[Outcome]) -> pd.DataFrame:
     for task, outcome in zip(plan.tasks, outcomes, strict=True):
         ended = {"status": outcome.status, "reason": outcome.reason}
         notes = json.dumps(dict(outcome.notes), sort_keys=True, default=str)
-        rows.append({**task.cell.model_dump(), **ended, "group": task.group, **outcome.metrics, "notes": notes})
+        rows.append(
+            {**task.cell.model_dump(), **ended, "group": task.group, **outcome.metrics, "notes": notes}
+        )
     measured = dict.fromkeys(name for outcome in outcomes for name in outcome.metrics)
     metrics = [*PROMISED, *(name for name in measured if name not in PROMISED)]
     table = pd.DataFrame(rows, columns=[*LEADING, "group", *metrics, "notes"])

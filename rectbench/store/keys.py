@@ -42,15 +42,15 @@ def file_digest(path: Path) -> str:
 
 
 def derived_seed(purpose: str, *identity: str | int) -> int:
-    """A seed in [0, 2³²) that hangs on the identity alone, not on order, process or job count."""
+    """A seed in [0, 2³²) that depends on the identity alone, not on order, process or job count."""
     return int(digest([purpose, *identity])[:8], 16)
 
 
 @cache
-def code_digest(*modules: str) -> str:
+def code_digest(*modules: str, root: Path = PACKAGE) -> str:
     """SHA-256 over the sources of modules of rectbench and of all that they import, see `source_closure`."""
-    files = source_closure(*modules)
-    return digest({str(file.relative_to(PACKAGE)): file_digest(file) for file in files})
+    files = source_closure(*modules, root=root)
+    return digest({str(file.relative_to(root)): file_digest(file) for file in files})
 
 
 @cache

@@ -1,4 +1,4 @@
-"""Warps into the rectified frame, lookup tables, triangulation."""
+"""Warps into the rectified frame, their lookup tables, frames and files. Imports calibrations and below."""
 
 from rectbench.warps.description import load_rectification, save_rectification
 from rectbench.warps.frame import centre_resolution_px, rectifying_rotations, refuse_epipole_in_view

@@ -3,12 +3,12 @@
     rectbench_rectification: 1      # this format; marks the file as one
     size: [820, 501]                # width and height of both rectified images, pixels
     baseline_m: 0.064               # x of the right camera in the rectified left frame
-    rig: ...                        # the source cameras and their pose, see `rectbench.calibrations.native`
+    rig: ...                        # the source cameras and their pose, see `calibrations.formats.native`
     left:
       R_rect_cam: ...               # 3x3, from the camera's frame to the rectified one
       target: ...                   # from rays to rectified pixels: perspective, or epipolar
     right: ...
-    notes: ...                      # what the method had to say of itself
+    notes: ...                      # what the method tells of itself
 
 What the targets mean stands in the file, as comments (`HEADER`).
 """
@@ -22,9 +22,10 @@ from pathlib import Path
 from typing import Any
 
 from rectbench.calibrations.contract import Given
-from rectbench.calibrations.documents.documents import Section, blaming, one_line, parse_document
+from rectbench.calibrations.documents.faults import blaming, one_line
+from rectbench.calibrations.documents.sections import Section, parse_document
 from rectbench.calibrations.documents.sources import Source
-from rectbench.calibrations.native import dump, read_fields, rig_fields
+from rectbench.calibrations.formats.native import read_fields, rig_fields
 from rectbench.errors import InvalidInput, UnknownName
 from rectbench.warps.frame import signed_baseline_m
 from rectbench.warps.profiles import Cubic, FramedProfile, Profile, Radial
@@ -32,6 +33,7 @@ from rectbench.warps.rectification import Rectification
 from rectbench.warps.targets import Epipolar, Framed, Perspective, Target
 from rectbench.warps.warp import Warp
 from rectbench.writing import write_atomically
+from rectbench.yaml_text import yaml_text
 
 MARK = "rectbench_rectification"
 VERSION = "1"
@@ -58,7 +60,19 @@ HEADER = """\
 
 
 def save_rectification(rect: Rectification, path: str | os.PathLike[str], **facts: Any) -> None:
-    """Write a rectification's description; `facts` are plain data put first, such as the method's name."""
+    """Write a rectification's description; `facts` are plain data put first, such as the method's name.
+
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> import rectbench as rb
+    >>> rect = rb.rectify(rb.load_rig("t265"), method="abraham")
+    >>> with TemporaryDirectory() as folder:
+    ...     file = Path(folder, "rectified.yaml")
+    ...     rb.save_rectification(rect, file, method="abraham")
+    ...     again = rb.load_rectification(file)
+    >>> bool((again.maps("left")[0] == rect.maps("left")[0]).all())
+    True
+    """
     write_atomically(Path(path), rectification_text(rect, **facts))
 
 
@@ -70,13 +84,15 @@ def rectification_text(rect: Rectification, **facts: Any) -> str:
         content[side] = {"R_rect_cam": warp.R_rect_cam.tolist(), "target": TARGET.write(warp.target)}
     content["notes"] = {name: float(n) if isinstance(n, float) else n for name, n in rect.notes.items()}
     content["rig"] = rig_fields(rect.rig)
-    return HEADER + dump(content)
+    return HEADER + yaml_text(content)
 
 
 def load_rectification(path: str | os.PathLike[str]) -> Rectification:
     """The rectification of a file that `save_rectification` wrote, to the last bit.
 
     Raises InvalidInput in one line that names file, key and what was expected.
+
+    See `save_rectification` for an example.
     """
     source = Source.read(path)
     document = parse_document(source.text, source.path)

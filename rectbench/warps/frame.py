@@ -26,6 +26,12 @@ def rectifying_rotations(rig: Rig) -> tuple[FloatArray, FloatArray]:
     Each camera takes half the relative rotation; then the smallest rotation lays the baseline on
     the x axis. The axis is taken as a line: a pair given right camera first keeps its images
     upright, and has `signed_baseline_m` below zero.
+
+    >>> import rectbench as rb
+    >>> rig = rb.load_rig("t265")
+    >>> R_rect_left, R_rect_right = rb.rectifying_rotations(rig)
+    >>> (R_rect_right @ rig.t_right_left / rig.baseline_m).round(9) + 0.0  # the baseline is the x axis
+    array([-1.,  0.,  0.])
     """
     half = Rotation.from_matrix(rig.R_right_left).as_rotvec() / 2
     R_mid_left = Rotation.from_rotvec(half).as_matrix()
@@ -61,6 +67,15 @@ def refuse_epipole_in_view(rig: Rig) -> None:
     """Raise Unsupported where an epipole lies inside the view of either camera.
 
     All epipolar planes meet there, so that no map to scan lines can be continuous.
+
+    >>> import numpy as np
+    >>> import rectbench as rb
+    >>> lens = rb.load_rig("t265").left
+    >>> rb.refuse_epipole_in_view(rb.Rig(lens, lens, np.eye(3), np.array([-0.1, 0.0, 0.0])))
+    >>> in_a_row = rb.Rig(lens, lens, np.eye(3), np.array([0.0, 0.0, -0.1]))
+    >>> rb.refuse_epipole_in_view(in_a_row)  # doctest: +ELLIPSIS
+    Traceback (most recent call last):
+    rectbench.errors.Unsupported: an epipole of rig ... lies in the left view, at pixel (420, 403) of ...
     """
     towards_right = rig.centre_right_in_left / rig.baseline_m
     baselines = {"left": (rig.left, towards_right), "right": (rig.right, rig.R_right_left @ towards_right)}
@@ -85,7 +100,12 @@ def _strictly_sees(camera: Camera, ray: FloatArray) -> bool:
 
 
 def centre_resolution_px(rig: Rig) -> float:
-    """Pixels per radian on the optical axis, the mean of the two cameras."""
+    """Pixels per radian on the optical axis, the mean of the two cameras.
+
+    >>> import rectbench as rb
+    >>> round(rb.centre_resolution_px(rb.load_rig("t265")), 1)
+    285.9
+    """
     rates = [
         np.sqrt(abs(np.linalg.det(camera.project_jacobian([0.0, 0.0, 1.0])[:, :2])))
         for camera in (rig.left, rig.right)

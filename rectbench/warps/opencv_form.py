@@ -35,6 +35,13 @@ def opencv_form(rect: Rectification) -> OpenCVForm:
 
     Raises Unsupported, with the reason, where it has none: an image that is no perspective one, or a pair
     whose cameras are not parallel after rectification, as a homography from matches leaves them.
+
+    >>> import rectbench as rb
+    >>> rig = rb.load_rig("t265")
+    >>> rb.opencv_form(rb.rectify(rig, method="conventional")).P1.round(1)
+    array([[285.9,   0. , 425.4,   0. ],
+           [  0. , 285.9, 401.1,   0. ],
+           [  0. ,   0. ,   1. ,   0. ]])
     """
     K_left, K_right = (_intrinsics(target) for target in (rect.left.target, rect.right.target))
     turn = rect.R_rect_right @ rect.rig.R_right_left @ rect.R_rect_left.T

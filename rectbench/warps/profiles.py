@@ -11,8 +11,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rectbench.errors import InvalidInput
-from rectbench.formulas.arrays import namespaced
+from rectbench.formulas.evaluation import namespaced
 from rectbench.formulas.inversion import invert_monotone
+from rectbench.formulas.namespaces import NUMPY
+from rectbench.formulas.protocol import Formulas
 from rectbench.types import Constants, FloatArray
 
 ANGLE_SLACK_RAD = 1e-9
@@ -20,7 +22,21 @@ ANGLE_SLACK_RAD = 1e-9
 
 
 class Profile(ABC):
-    """A rising function from an angle to a pixel coordinate, on a stated range of angles."""
+    """A rising function from an angle to a pixel coordinate, on a stated range of angles.
+
+    A subclass states two formulas in the language of `rb.Formulas`, and the numbers in them:
+
+    >>> import rectbench as rb
+    >>> class Mercator(rb.Profile):
+    ...     low, high = -1.5, 1.5
+    ...     constants = {"focal": 300.0, "low": -1.5, "high": 1.5}
+    ...     def value(self, c, angle, xp):
+    ...         return c.focal * xp.asinh(xp.tan(angle))
+    ...     def angle(self, c, value, xp):
+    ...         return xp.atan(xp.sinh(value / c.focal))
+    >>> Mercator()([0.0, 0.5]).round(2)
+    array([  0.  , 156.67])
+    """
 
     low: float
     """Least angle, radians."""
@@ -33,11 +49,11 @@ class Profile(ABC):
         """The numbers in the formulas, `low` and `high` among them."""
 
     @abstractmethod
-    def value(self, c: Any, angle: Any, xp: Any) -> Any:
+    def value(self, c: Any, angle: Any, xp: Formulas) -> Any:
         """Pixel coordinate of the angle (radians)."""
 
     @abstractmethod
-    def angle(self, c: Any, value: Any, xp: Any) -> Any:
+    def angle(self, c: Any, value: Any, xp: Formulas) -> Any:
         """Angle (radians) of the pixel coordinate; anything for one out of range."""
 
     def framed(self, start: float, scale: float) -> Profile:
@@ -47,7 +63,7 @@ class Profile(ABC):
     def __call__(self, angle: ArrayLike) -> FloatArray:
         """Pixel coordinates of angles in radians, of any shape."""
         result: FloatArray = np.asarray(
-            self.value(namespaced(self.constants), np.asarray(angle, dtype=float), np)
+            self.value(namespaced(self.constants), np.asarray(angle, dtype=float), NUMPY)
         )
         return result
 
@@ -73,16 +89,21 @@ class FramedProfile(Profile):
         window = {"start": self.start, "scale": self.scale, "low": self.low, "high": self.high}
         return {**window, "profile": self.profile.constants}
 
-    def value(self, c: Any, angle: Any, xp: Any) -> Any:
+    def value(self, c: Any, angle: Any, xp: Formulas) -> Any:
         return (self.profile.value(c.profile, angle, xp) - c.start) * c.scale - 0.5
 
-    def angle(self, c: Any, value: Any, xp: Any) -> Any:
+    def angle(self, c: Any, value: Any, xp: Formulas) -> Any:
         return self.profile.angle(c.profile, (value + 0.5) / c.scale + c.start, xp)
 
 
 @dataclass(frozen=True)
 class Cubic(Profile):
-    """Ψ(θ) = c0 + c1 θ + c2 θ² + c3 θ³, rising over [low, high] (the paper's rectification model)."""
+    """Ψ(θ) = c0 + c1 θ + c2 θ² + c3 θ³, rising over [low, high] (the paper's rectification model).
+
+    >>> import rectbench as rb
+    >>> rb.Cubic(10.0, 300.0, 0.0, -10.0, low=-1.0, high=1.0)([0.0, 0.5])
+    array([ 10.  , 158.75])
+    """
 
     c0: float
     c1: float
@@ -112,10 +133,10 @@ class Cubic(Profile):
     def _cubic(self, angle: float) -> float:
         return self.c0 + angle * (self.c1 + angle * (self.c2 + angle * self.c3))
 
-    def value(self, c: Any, angle: Any, xp: Any) -> Any:
+    def value(self, c: Any, angle: Any, xp: Formulas) -> Any:
         return c.c0 + angle * (c.c1 + angle * (c.c2 + angle * c.c3))
 
-    def angle(self, c: Any, value: Any, xp: Any) -> Any:
+    def angle(self, c: Any, value: Any, xp: Formulas) -> Any:
         def cubic_and_slope(angle: Any) -> tuple[Any, Any]:
             slope = c.c1 + angle * (2.0 * c.c2 + 3.0 * c.c3 * angle)
             return self.value(c, angle, xp), slope
@@ -149,7 +170,12 @@ RADIAL_LIMIT_RAD = {
 
 @dataclass(frozen=True)
 class Radial(Profile):
-    """centre + focal r(θ) with r one of the classical lens laws (Abraham and Förstner 2005)."""
+    """centre + focal r(θ) with r one of the classical lens laws (Abraham and Förstner 2005).
+
+    >>> import rectbench as rb
+    >>> rb.Radial("equidistant", 300.0, 10.0)([0.0, 0.5])
+    array([ 10., 160.])
+    """
 
     law: str
     focal_px: float
@@ -178,7 +204,7 @@ class Radial(Profile):
     def constants(self) -> Constants:
         return {"focal": self.focal_px, "centre": self.centre_px, "low": self.low, "high": self.high}
 
-    def value(self, c: Any, angle: Any, xp: Any) -> Any:
+    def value(self, c: Any, angle: Any, xp: Formulas) -> Any:
         laws = {
             "equidistant": lambda t: t,
             "stereographic": lambda t: 2.0 * xp.tan(0.5 * t),
@@ -188,7 +214,7 @@ class Radial(Profile):
         }
         return c.centre + c.focal * laws[self.law](angle)
 
-    def angle(self, c: Any, value: Any, xp: Any) -> Any:
+    def angle(self, c: Any, value: Any, xp: Formulas) -> Any:
         inverses = {
             "equidistant": lambda r: r,
             "stereographic": lambda r: 2.0 * xp.atan2(r, 2.0 + 0.0 * r),

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Literal
 
 import cv2
 import numpy as np
@@ -15,12 +15,13 @@ from rectbench.errors import InvalidInput
 from rectbench.rigs import Rig
 from rectbench.types import FloatArray
 from rectbench.warps.frame import rectifying_rotations, signed_baseline_m
-from rectbench.warps.lookup.resampling import Filter, Resampler
+from rectbench.warps.lookup.resampling import Filter, Resampler, Side
 from rectbench.warps.lookup.tables import FloatMap, lookup_table, reads_source
-from rectbench.warps.targets import Target
+from rectbench.warps.profiles import Profile
+from rectbench.warps.targets import Epipolar, Target
+from rectbench.warps.view.extent import Range, ViewAngles, view_angles
 from rectbench.warps.warp import Warp
 
-Side = Literal["left", "right"]
 LARGEST_SIDE_PX = 32766
 """`cv2.remap` takes no larger image."""
 
@@ -30,7 +31,18 @@ class Rectification:
     """What a rectifier returns: where each pixel of both images goes.
 
     `rig` is the rig the rectifier believed in; depth is computed from it. `notes` are what the
-    method has to say of itself (energy, focal length, a warning), shown beside its row.
+    method tells of itself (energy, focal length, a warning), shown beside its row.
+
+    >>> import rectbench as rb
+    >>> rig = rb.load_rig("t265")
+    >>> rect = rb.rectify(rig, method="abraham")
+    >>> rect.size
+    (804, 805)
+    >>> map_x, map_y = rect.maps("left")
+    >>> map_x.shape
+    (805, 804)
+    >>> rect.triangulate([400.0, 300.0], 5.0).round(2)  # metres
+    array([-0.  , -1.29,  3.44])
     """
 
     rig: Rig
@@ -65,6 +77,41 @@ class Rectification:
         R_rect_left, R_rect_right = rectifying_rotations(rig)
         warps = Warp(rig.left, R_rect_left, left), Warp(rig.right, R_rect_right, right)
         return cls(rig, *warps, size, notes or {})
+
+    @classmethod
+    def from_profiles(
+        cls,
+        rig: Rig,
+        u_left: Profile,
+        u_right: Profile,
+        v: Profile,
+        notes: Mapping[str, float | str] | None = None,
+        *,
+        view: ViewAngles | None = None,
+    ) -> Rectification:
+        """Columns û = u_left(γ) and u_right(γ), rows v̂ = v(β) of both, in a frame that just holds them.
+
+        The profiles' own offsets do not matter: the least column and the least row come to the frame's edge,
+        -0.5 px, and the frame reaches to the greatest, in whole pixels. Both images share it, so that the
+        difference of their columns stays what the profiles make it.
+
+        `view` are the angles that are shown, those of the rig's whole view where it is left out; of these
+        each profile shows what lies in its range. Raises InvalidInput where they span no finite image.
+
+        >>> import rectbench as rb
+        >>> u, v = rb.Radial("stereographic", 300.0, 0.0), rb.Radial("equidistant", 300.0, 0.0)
+        >>> rect = rb.Rectification.from_profiles(rb.load_rig("t265"), u, u, v)
+        >>> rect.left.target.u == rect.right.target.u
+        True
+        """
+        view = view or view_angles(rig)
+        left, right = _shown(u_left, view.gamma_left), _shown(u_right, view.gamma_right)
+        rows = _shown(v, view.beta)
+        start = min(left[0], right[0])
+        size = _whole_size(max(left[1], right[1]) - start, rows[1] - rows[0])
+        v = v.framed(rows[0], 1.0)
+        targets = [Epipolar(u.framed(start, 1.0), v) for u in (u_left, u_right)]
+        return cls.from_targets(rig, targets[0], targets[1], size, notes)
 
     @property
     def R_rect_left(self) -> FloatArray:
@@ -167,6 +214,21 @@ class Rectification:
     def _camera_rays(warp: Warp, px_rect: FloatArray) -> FloatArray:
         rays: FloatArray = warp.target.unproject(px_rect)[0] @ warp.R_rect_cam
         return rays
+
+
+def _shown(profile: Profile, angles: Range) -> tuple[float, float]:
+    """The least and the greatest pixel coordinate of those angles that the profile has."""
+    low, high = max(angles.low, profile.low), min(angles.high, profile.high)
+    return float(profile(low)), float(profile(high))
+
+
+def _whole_size(width: float, height: float) -> tuple[int, int]:
+    try:
+        return math.ceil(width), math.ceil(height)
+    except (ValueError, OverflowError):
+        raise InvalidInput(
+            f"the profiles span {width} x {height} px over the view; expected finite numbers"
+        ) from None
 
 
 def _note(name: str, value: object) -> float | str:

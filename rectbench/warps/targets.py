@@ -11,18 +11,35 @@ from numpy.typing import NDArray
 
 from rectbench.cameras import Projection
 from rectbench.errors import InvalidInput
-from rectbench.formulas.arrays import namespaced
+from rectbench.formulas.evaluation import namespaced
+from rectbench.formulas.namespaces import NUMPY
+from rectbench.formulas.protocol import Formulas
 from rectbench.types import Constants, FloatArray
 from rectbench.warps.profiles import ANGLE_SLACK_RAD, Profile, Radial
 
 
 class Target(Projection):
-    """A rectified image as a projection, with what its lookup table can share along rows and columns."""
+    """A rectified image as a projection, with what its lookup table can share along rows and columns.
+
+    A subclass states the two formulas of a `Projection`, in the language of `rb.Formulas`, and their numbers:
+
+    >>> import rectbench as rb
+    >>> class Cylinder(rb.Target):
+    ...     constants = {"f": 300.0}
+    ...     def project_formula(self, c, x, y, z, xp):
+    ...         return c.f * xp.atan2(x, z), c.f * y / xp.hypot(x, z), xp.hypot(x, z) > 0.0
+    ...     def unproject_formula(self, c, u, v, xp):
+    ...         length = xp.hypot(1.0, v / c.f)
+    ...         return xp.sin(u / c.f) / length, v / c.f / length, xp.cos(u / c.f) / length, abs(u) < 900.0
+    >>> pixel, ok = Cylinder().project([1.0, 0.0, 1.0])
+    >>> pixel.round(2), bool(ok)
+    (array([235.62,   0.  ]), True)
+    """
 
     def axis_tables(
         self, columns: FloatArray, rows: FloatArray
     ) -> tuple[tuple[FloatArray, ...], tuple[FloatArray, ...]]:
-        """Values that hang on the column (û) alone and on the row (v̂) alone, for `ray_formula`."""
+        """Values that depend on the column (û) alone and on the row (v̂) alone, for `ray_formula`."""
         return (columns,), (rows,)
 
     def framed(self, left: float, top: float, across: float, down: float) -> Target:
@@ -30,7 +47,7 @@ class Target(Projection):
         return Framed(self, left, top, across, down)
 
     def ray_formula(
-        self, c: Any, column: tuple[Any, ...], row: tuple[Any, ...], xp: Any
+        self, c: Any, column: tuple[Any, ...], row: tuple[Any, ...], xp: Formulas
     ) -> tuple[Any, Any, Any, Any]:
         """The unit ray of a rectified pixel from the values of `axis_tables`, and its validity."""
         (u,), (v,) = column, row
@@ -55,11 +72,11 @@ class Framed(Target):
         window = {name: getattr(self, name) for name in ("left", "top", "across", "down")}
         return {**window, "target": self.target.constants}
 
-    def project_formula(self, c: Any, x: Any, y: Any, z: Any, xp: Any) -> tuple[Any, Any, Any]:
+    def project_formula(self, c: Any, x: Any, y: Any, z: Any, xp: Formulas) -> tuple[Any, Any, Any]:
         u, v, ok = self.target.project_formula(c.target, x, y, z, xp)
         return (u - c.left) * c.across - 0.5, (v - c.top) * c.down - 0.5, ok
 
-    def unproject_formula(self, c: Any, u: Any, v: Any, xp: Any) -> tuple[Any, Any, Any, Any]:
+    def unproject_formula(self, c: Any, u: Any, v: Any, xp: Formulas) -> tuple[Any, Any, Any, Any]:
         u, v = (u + 0.5) / c.across + c.left, (v + 0.5) / c.down + c.top
         return self.target.unproject_formula(c.target, u, v, xp)
 
@@ -71,7 +88,7 @@ class Framed(Target):
         )
 
     def ray_formula(
-        self, c: Any, column: tuple[Any, ...], row: tuple[Any, ...], xp: Any
+        self, c: Any, column: tuple[Any, ...], row: tuple[Any, ...], xp: Formulas
     ) -> tuple[Any, Any, Any, Any]:
         return self.target.ray_formula(c.target, column, row, xp)
 
@@ -82,7 +99,13 @@ WORST_CONDITION = 1e13
 
 @dataclass(frozen=True, eq=False)
 class Perspective(Target):
-    """(û, v̂, 1) ~ matrix @ ray, valid where the third coordinate is positive."""
+    """(û, v̂, 1) ~ matrix @ ray, valid where the third coordinate is positive.
+
+    >>> import rectbench as rb
+    >>> pixel, ok = rb.Perspective.from_focal(300.0, 320.0, 240.0).project([0.5, 0.0, 1.0])
+    >>> pixel, bool(ok)
+    (array([470., 240.]), True)
+    """
 
     matrix: FloatArray = field(repr=False)
     """[3, 3], pixels from rays; the third row points to where the image looks."""
@@ -111,12 +134,12 @@ class Perspective(Target):
         window = np.array([[across, 0, -left * across - 0.5], [0, down, -top * down - 0.5], [0, 0, 1]])
         return Perspective(window @ self.matrix)
 
-    def project_formula(self, c: Any, x: Any, y: Any, z: Any, xp: Any) -> tuple[Any, Any, Any]:
+    def project_formula(self, c: Any, x: Any, y: Any, z: Any, xp: Formulas) -> tuple[Any, Any, Any]:
         (a, b, d), (e, f, g), (h, i, j) = c.P
         w = h * x + i * y + j * z
         return (a * x + b * y + d * z) / w, (e * x + f * y + g * z) / w, w > 0.0
 
-    def unproject_formula(self, c: Any, u: Any, v: Any, xp: Any) -> tuple[Any, Any, Any, Any]:
+    def unproject_formula(self, c: Any, u: Any, v: Any, xp: Formulas) -> tuple[Any, Any, Any, Any]:
         (a, b, d), (e, f, g), (h, i, j) = c.P_inverse
         x, y, z = a * u + b * v + d, e * u + f * v + g, h * u + i * v + j
         length = xp.sqrt(x * x + y * y + z * z)
@@ -125,7 +148,13 @@ class Perspective(Target):
 
 @dataclass(frozen=True)
 class Epipolar(Target):
-    """û = u(γ), v̂ = v(β): every map of this form keeps rows, provided both images share v."""
+    """û = u(γ), v̂ = v(β): every map of this form keeps rows, provided both images share v.
+
+    >>> import rectbench as rb
+    >>> target = rb.Epipolar(rb.Radial("equidistant", 300.0, 320.0), rb.Radial("equidistant", 300.0, 240.0))
+    >>> target.project([0.0, 0.0, 2.0])[0]
+    array([320., 240.])
+    """
 
     u: Profile
     v: Profile
@@ -137,12 +166,12 @@ class Epipolar(Target):
     def framed(self, left: float, top: float, across: float, down: float) -> Epipolar:
         return Epipolar(self.u.framed(left, across), self.v.framed(top, down))
 
-    def project_formula(self, c: Any, x: Any, y: Any, z: Any, xp: Any) -> tuple[Any, Any, Any]:
+    def project_formula(self, c: Any, x: Any, y: Any, z: Any, xp: Formulas) -> tuple[Any, Any, Any]:
         gamma, beta = xp.atan2(x, xp.hypot(y, z)), xp.atan2(y, z)
         ok = _in_range(c.u, gamma) & _in_range(c.v, beta)
         return self.u.value(c.u, gamma, xp), self.v.value(c.v, beta, xp), ok
 
-    def unproject_formula(self, c: Any, u: Any, v: Any, xp: Any) -> tuple[Any, Any, Any, Any]:
+    def unproject_formula(self, c: Any, u: Any, v: Any, xp: Formulas) -> tuple[Any, Any, Any, Any]:
         gamma, beta = self.u.angle(c.u, u, xp), self.v.angle(c.v, v, xp)
         column, row = (xp.sin(gamma), xp.cos(gamma)), (xp.sin(beta), xp.cos(beta))
         x, y, z, ok = self.ray_formula(c, column, row, xp)
@@ -154,14 +183,14 @@ class Epipolar(Target):
     ) -> tuple[tuple[FloatArray, ...], tuple[FloatArray, ...]]:
         c = namespaced(self.constants)
         with np.errstate(invalid="ignore"):
-            gamma = self.u.angle(c.u, columns, np)
-            beta = self.v.angle(c.v, rows, np)
+            gamma = self.u.angle(c.u, columns, NUMPY)
+            beta = self.v.angle(c.v, rows, NUMPY)
             gamma = np.where(_in_range(c.u, gamma) & (abs(gamma) <= math.pi / 2), gamma, math.nan)
             beta = np.where(_in_range(c.v, beta), beta, math.nan)
         return (np.sin(gamma), np.cos(gamma)), (np.sin(beta), np.cos(beta))
 
     def ray_formula(
-        self, c: Any, column: tuple[Any, ...], row: tuple[Any, ...], xp: Any
+        self, c: Any, column: tuple[Any, ...], row: tuple[Any, ...], xp: Formulas
     ) -> tuple[Any, Any, Any, Any]:
         (sin_gamma, cos_gamma), (sin_beta, cos_beta) = column, row
         return sin_gamma, cos_gamma * sin_beta, cos_gamma * cos_beta, cos_gamma >= 0.0

@@ -9,7 +9,8 @@ from numpy.typing import ArrayLike
 
 from rectbench.cameras import Camera
 from rectbench.cameras.projection import as_points, projected_partials
-from rectbench.formulas.arrays import evaluate_points
+from rectbench.formulas.evaluation import evaluate_points
+from rectbench.formulas.protocol import Formulas
 from rectbench.rigs.rig import checked_rotation
 from rectbench.types import Constants, FloatArray
 from rectbench.warps.targets import Target
@@ -17,7 +18,17 @@ from rectbench.warps.targets import Target
 
 @dataclass(frozen=True, eq=False)
 class Warp:
-    """Target ∘ R_rect_cam ∘ Φ⁻¹: the paper's H = Ψ ∘ R ∘ Φ (section III), exactly invertible."""
+    """Target ∘ R_rect_cam ∘ Φ⁻¹: the paper's H = Ψ ∘ R ∘ Φ (section III), exactly invertible.
+
+    >>> import rectbench as rb
+    >>> rig = rb.load_rig("t265")
+    >>> warp = rb.rectify(rig, method="abraham").left
+    >>> warp.forward([400.0, 400.0]).round(1), warp.jacobian([400.0, 400.0]).round(1)
+    (array([380.1, 399.1]), array([[ 1.,  0.],
+           [-0.,  1.]]))
+    >>> warp.inverse(warp.forward([400.0, 400.0])).round(6)
+    array([400., 400.])
+    """
 
     source: Camera
     R_rect_cam: FloatArray = field(repr=False)
@@ -58,17 +69,17 @@ class Warp:
         entries, _ = evaluate_points(self._inverse_jacobian_formula, self.constants, points)
         return entries.reshape(*entries.shape[:-1], 2, 2)
 
-    def _forward_formula(self, c: Any, u: Any, v: Any, xp: Any) -> tuple[Any, Any, Any]:
+    def _forward_formula(self, c: Any, u: Any, v: Any, xp: Formulas) -> tuple[Any, Any, Any]:
         x, y, z, seen = self.source.unproject_formula(c.source, u, v, xp)
         u_rect, v_rect, ok = self.target.project_formula(c.target, *rotated(c.R, x, y, z), xp)
         return u_rect, v_rect, ok & seen
 
-    def _inverse_formula(self, c: Any, u_rect: Any, v_rect: Any, xp: Any) -> tuple[Any, Any, Any]:
+    def _inverse_formula(self, c: Any, u_rect: Any, v_rect: Any, xp: Formulas) -> tuple[Any, Any, Any]:
         x, y, z, ok = self.target.unproject_formula(c.target, u_rect, v_rect, xp)
         u, v, seen = self.source.project_formula(c.source, *rotated_back(c.R, x, y, z), xp)
         return u, v, ok & seen
 
-    def jacobian_formula(self, c: Any, u: Any, v: Any, xp: Any) -> tuple[Any, Any, Any, Any, Any]:
+    def jacobian_formula(self, c: Any, u: Any, v: Any, xp: Formulas) -> tuple[Any, Any, Any, Any, Any]:
         """∂û/∂u, ∂û/∂v, ∂v̂/∂u, ∂v̂/∂v and the mask, for formulas over many pixels."""
         x, y, z, seen = self.source.unproject_formula(c.source, u, v, xp)
         du, dv, _ = projected_partials(self.source, c.source, x, y, z, xp)
@@ -82,7 +93,7 @@ class Warp:
             ok & seen,
         )
 
-    def _inverse_jacobian_formula(self, c: Any, u_rect: Any, v_rect: Any, xp: Any) -> tuple[Any, ...]:
+    def _inverse_jacobian_formula(self, c: Any, u_rect: Any, v_rect: Any, xp: Formulas) -> tuple[Any, ...]:
         x, y, z, ok = self.target.unproject_formula(c.target, u_rect, v_rect, xp)
         du_rect, dv_rect, _ = projected_partials(self.target, c.target, x, y, z, xp)
         across, down = (rotated_back(c.R, *d) for d in ray_derivatives(du_rect, dv_rect))

@@ -17,7 +17,7 @@ import pytest
 
 import rectbench as rb
 from rectbench.matching import match_features, relative_pose
-from rectbench.matching.pose.estimate import MOST_FEATURES, PER_CELL, WORKING_PIXELS
+from rectbench.matching.pose.estimate import MOST_FEATURES, POSE_PER_CELL, POSE_PIXELS
 from rectbench.matching.pose.five_point import essential_matrices
 from tests.matching.box_room import pair_of
 from tests.rigs_for_tests import points_before, rig
@@ -47,11 +47,11 @@ def test_pose(benchmark: Callable[..., Any], images: tuple[np.ndarray, np.ndarra
 
 
 @pytest.mark.benchmark(group="features of two images, 1920x1280")
-@pytest.mark.parametrize("working_pixels", [300_000, WORKING_PIXELS, 1_200_000, None])
+@pytest.mark.parametrize("working_pixels", [300_000, POSE_PIXELS, 1_200_000, None])
 def test_features(
     benchmark: Callable[..., Any], images: tuple[np.ndarray, np.ndarray], working_pixels: float | None
 ) -> None:
-    options = {"most": MOST_FEATURES, "per_cell": PER_CELL}
+    options = {"most": MOST_FEATURES, "per_cell": POSE_PER_CELL}
     benchmark(match_features, *images, working_pixels=working_pixels, **options)
 
 

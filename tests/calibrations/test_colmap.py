@@ -11,7 +11,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from rectbench import InvalidInput, Rig, load_rig
-from rectbench.calibrations.photogrammetry.colmap import MODELS, NUMBERED, read_colmap
+from rectbench.calibrations.formats.photogrammetry.colmap import MODELS, NUMBERED, read_colmap
 
 R_WORLD = Rotation.from_euler("xyz", [10, 20, -30], degrees=True)
 R_RIG = Rotation.from_euler("xyz", [1, -2, 3], degrees=True)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from rectbench import Camera, InvalidInput, Rig, load_rig
-from rectbench.calibrations.reading import calibration_formats
+from rectbench.calibrations import calibration_formats
 from tests.calibrations.examples import EXAMPLES, Example
 
 

@@ -10,7 +10,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from rectbench import InvalidInput, load_rig
-from rectbench.calibrations.toolboxes.mrcal import parse
+from rectbench.calibrations.formats.toolboxes.mrcal import parse
 
 RT_LEFT = [0.02, -0.3, -0.01, 1.0, 2.0, -3.0]
 RT_RIGHT = [0.2, 0.1, -0.01, 2.0, 2.0, -2.5]

@@ -16,8 +16,9 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from rectbench import Camera, InvalidInput, Rig, UnknownName, load_rig
-from rectbench.calibrations import calibration_formats, written_formats
+from rectbench.calibrations import calibration_formats
 from rectbench.cameras.equivalents import equal_cameras
+from rectbench.rigs import written_formats
 from tests.calibrations.calibration_files import R_RIGHT_LEFT, T_RIGHT_LEFT
 from tests.calibrations.examples import (
     AFFINE1,

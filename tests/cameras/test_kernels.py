@@ -9,8 +9,9 @@ from hypothesis import strategies as st
 
 from rectbench import llvm
 from rectbench.cameras import Camera, brown
-from rectbench.formulas import arrays
+from rectbench.formulas import evaluation
 from rectbench.formulas.inversion import invert_in_disk, invert_monotone
+from rectbench.formulas.namespaces import NUMPY
 from tests.cameras.random_cameras import MODELS, SIZE, cameras, domain_rays
 
 needs_llvm = pytest.mark.skipif(not llvm.available(), reason=f"no LLVM: {llvm.problem()}")
@@ -30,9 +31,9 @@ NOWHERE = [
 def both(function, points):
     """What `function` gives for the points by NumPy and by a kernel."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(arrays, "KERNEL_THRESHOLD", 10**9)
+        patch.setattr(evaluation, "KERNEL_THRESHOLD", 10**9)
         by_numpy = function(points)
-        patch.setattr(arrays, "KERNEL_THRESHOLD", 1)
+        patch.setattr(evaluation, "KERNEL_THRESHOLD", 1)
         return by_numpy, function(points)
 
 
@@ -71,7 +72,7 @@ def test_a_full_frame_comes_back_and_keeps_its_shape():
         "kannala-brandt", (320, 200), {"fx": 100, "fy": 101, "cx": 160, "cy": 99, "k1": -0.01, "k2": 0.003}
     )
     grid = camera.pixel_grid()
-    assert grid.shape[0] * grid.shape[1] >= arrays.KERNEL_THRESHOLD
+    assert grid.shape[0] * grid.shape[1] >= evaluation.KERNEL_THRESHOLD
     rays, known = camera.unproject(grid)
     pixels, seen = camera.project(rays)
     assert rays.shape == (200, 320, 3)
@@ -85,7 +86,7 @@ def test_a_full_frame_comes_back_and_keeps_its_shape():
 @needs_llvm
 def test_kernels_leave_their_input_alone_and_their_output_is_ones_own():
     camera = Camera("equidistant", SIZE, {"fx": 300, "fy": 300, "cx": 640, "cy": 480})
-    pixels = camera.pixel_grid().reshape(-1, 2)[: arrays.KERNEL_THRESHOLD]
+    pixels = camera.pixel_grid().reshape(-1, 2)[: evaluation.KERNEL_THRESHOLD]
     before = pixels.copy()
     first, _ = camera.unproject(pixels)
     kept = first.copy()
@@ -116,9 +117,9 @@ def test_the_search_in_a_disk_takes_a_few_steps_and_ends_on_a_fold_too():
     angle = np.linspace(0, 6, 200)
     for radius, most_calls in ((0.6 * c.max_radius, 9), (c.max_radius, 60)):
         point = radius * np.cos(angle), radius * np.sin(angle)
-        target = brown.distorted(c, *point, np)
+        target = brown.distorted(c, *point, NUMPY)
         calls.clear()
-        *found, reached = invert_in_disk(formula, c, *target, c.max_radius, c.reach, np)
+        *found, reached = invert_in_disk(formula, c, *target, c.max_radius, c.reach, NUMPY)
         assert reached.all()
         np.testing.assert_allclose(found, point, rtol=0, atol=1e-9)
         assert len(calls) <= most_calls
@@ -133,7 +134,7 @@ def test_invert_monotone_finds_the_root_from_any_start(bend, slope, place, start
     low, high = -4.0, 4.0
     x = np.array([low + (high - low) * place])
     target = function(x)[0]
-    found = invert_monotone(function, target, low, high, np.array([low + (high - low) * start]), np)
+    found = invert_monotone(function, target, low, high, np.array([low + (high - low) * start]), NUMPY)
     np.testing.assert_allclose(function(found)[0], target, rtol=1e-13, atol=1e-13)
 
 
@@ -142,5 +143,5 @@ def test_invert_monotone_gives_the_nearer_end_for_a_target_beyond():
         return x**3 + x, 3 * x**2 + 1
 
     target = np.array([-100.0, 100.0])
-    found = invert_monotone(function, target, -1.0, 2.0, np.zeros(2), np)
+    found = invert_monotone(function, target, -1.0, 2.0, np.zeros(2), NUMPY)
     np.testing.assert_allclose(found, [-1, 2], rtol=1e-14)

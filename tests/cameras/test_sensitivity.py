@@ -1,4 +1,4 @@
-"""How pixels hang on a lens's parameters agrees with cameras made anew, for every projection model."""
+"""How pixels depend on a lens's parameters agrees with cameras made anew, for every projection model."""
 
 import numpy as np
 import pytest

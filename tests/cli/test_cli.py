@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import os
 import re
 import subprocess
 import sys
-import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -72,9 +70,7 @@ def test_a_run_ends_by_printing_the_table_and_the_page(
 ) -> None:
     monkeypatch.setenv(STORE_VARIABLE, str(finished / "store"))
     before = (finished / "run" / "results.parquet").read_bytes()
-    begin = time.monotonic()
     code, out, err = shell("run", finished / "small.py", "--out", finished / "run")
-    assert time.monotonic() - begin < 5
     assert code == 0
     assert err == ""
     assert "abraham" in out
@@ -270,18 +266,24 @@ def test_render_and_rectify_go_together(shell: Shell, tmp_path: Path) -> None:
     assert not (tmp_path / "wrong").exists()
 
 
-def test_help_is_there_at_once_and_names_every_verb() -> None:
-    seconds = []
-    for _ in range(3):
-        begin = time.process_time_ns(), os.times().children_user + os.times().children_system
-        done = subprocess.run(
-            [sys.executable, "-m", "rectbench", "--help"], capture_output=True, text=True, check=True
-        )
-        seconds.append(os.times().children_user + os.times().children_system - begin[1])
+def test_help_names_every_verb_and_imports_no_heavy_package() -> None:
+    code = """
+import runpy, sys
+sys.argv = ["rectbench", "--help"]
+try:
+    runpy.run_module("rectbench", run_name="__main__")
+finally:
+    print(*sys.modules, file=sys.stderr)
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     verbs = ("list", "run", "report", "gate", "compare", "render", "rectify", "check", "doctor", "gc")
     for verb in verbs:
         assert re.search(rf"\b{verb}\b", done.stdout)
-    assert min(seconds) < 0.5  # processor time: the machine may be busy with other things
+    imported = set(done.stderr.split())
+    assert "rectbench.cli" in imported
+    assert imported.isdisjoint(
+        {"numpy", "scipy", "cv2", "pandas", "pyarrow", "matplotlib", "mitsuba", "drjit"}
+    )
 
 
 @pytest.mark.parametrize(

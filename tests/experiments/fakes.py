@@ -31,12 +31,8 @@ class Fake(rb.Rectifier):
 {before}
         rb.refuse_epipole_in_view(problem.rig)
         focal = options.scale * rb.centre_resolution_px(problem.rig)
-        view = rb.view_angles(problem.rig)
-        u = rb.Radial("equidistant", focal, -0.5 - focal * view.gamma.low)
-        v = rb.Radial("equidistant", focal, -0.5 - focal * view.beta.low)
-        size = int(np.ceil(u(view.gamma.high) + 0.5)), int(np.ceil(v(view.beta.high) + 0.5))
-        target = rb.Epipolar(u, v)
-        return rb.Rectification.from_targets(problem.rig, target, target, size, {{"focal_px": focal}})
+        angle = rb.Radial("equidistant", focal, 0.0)
+        return rb.Rectification.from_profiles(problem.rig, angle, angle, angle, {{"focal_px": focal}})
 '''
 
 SCENE = '''

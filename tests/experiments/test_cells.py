@@ -5,9 +5,12 @@ import time
 import numpy as np
 import pytest
 
-from rectbench.experiments.execution.cells import believed_rig, problem_of, timed
+from rectbench.experiments.execution.cells import problem_of
 from rectbench.experiments.planning import make_plan
-from rectbench.pairs.pairs import placed_rig
+from rectbench.experiments.tasks import CellTask
+from rectbench.metrics.stopwatch import timed
+from rectbench.pairs.opening import open_pair
+from rectbench.rigs import Rig
 from rectbench.store.store import Store
 from tests.experiments.fakes import small_report
 
@@ -31,13 +34,17 @@ def test_a_slow_call_is_made_once() -> None:
     assert len(calls) == 1
 
 
+def believed(task: CellTask, store: Store) -> Rig:
+    return open_pair(task.pair, store).believed_rig(task.cell.pose)
+
+
 def test_all_methods_of_a_pair_are_misled_alike_and_never_told(store: Store) -> None:
     plan = make_plan(small_report(methods=("abraham", "conventional"), poses=("exact", "perturbed")))
     exact, _, first, second = plan.tasks
-    assert believed_rig(exact, store) == placed_rig(exact.pair)
-    assert believed_rig(first, store) == believed_rig(second, store) != placed_rig(first.pair)
-    problem = problem_of(first, store)
-    assert problem.rig == believed_rig(first, store)
+    assert believed(exact, store) == open_pair(exact.pair, store).rig
+    assert believed(first, store) == believed(second, store) != open_pair(first.pair, store).rig
+    problem = problem_of(first, open_pair(first.pair, store))
+    assert problem.rig == believed(first, store)
     assert problem.images is None
     # The matches of a calibrated method come from what is believed, not from what is true.
     rays_left, _ = problem.rig.left.unproject(problem.matches.left)
@@ -54,4 +61,4 @@ def test_random_numbers_hang_on_the_cell_alone(store: Store) -> None:
         )
     ).tasks[-1]
     assert (few.cell.method, few.cell.seed) == (many.cell.method, many.cell.seed)
-    assert believed_rig(few, store) == believed_rig(many, store)
+    assert believed(few, store) == believed(many, store)

@@ -10,8 +10,9 @@ import rectbench as rb
 from rectbench.experiments.execution.cells import cell_inputs
 from rectbench.experiments.planning import Selection, find_report, make_plan
 from rectbench.experiments.tasks import CellTask
-from rectbench.pairs.pairs import image_inputs, placed_rig, truth_inputs
+from rectbench.pairs.opening import open_pair
 from rectbench.store.keys import digest
+from rectbench.store.store import Store
 from tests.experiments.fakes import small_report, write_method, write_scene
 
 
@@ -102,15 +103,16 @@ def test_two_files_of_one_rig_name_clash(tmp_path: Path) -> None:
 
 def test_the_true_rig_is_scaled_and_moved() -> None:
     task = make_plan(small_report(motions=("sideways",), image_width=200)).tasks[0]
-    rig = placed_rig(task.pair)
+    rig = open_pair(task.pair, Store.default()).rig
     assert rig.left.width == rig.right.width == 200
     assert rig.baseline_m == pytest.approx(rb.load_rig("t265").baseline_m)
     other = make_plan(small_report(motions=("sideways",), image_width=200, seeds=(1,))).tasks[0]
-    assert (placed_rig(other.pair).R_right_left != rig.R_right_left).any()
+    assert (open_pair(other.pair, Store.default()).rig.R_right_left != rig.R_right_left).any()
 
 
 def _key(**fields: Any) -> str:
-    return digest(cell_inputs(make_plan(small_report(**fields)).tasks[0]))
+    task = make_plan(small_report(**fields)).tasks[0]
+    return digest(cell_inputs(task, open_pair(task.pair, Store.default())))
 
 
 def test_all_that_shapes_a_cell_shapes_its_key(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -136,7 +138,7 @@ def test_all_that_shapes_a_cell_shapes_its_key(tmp_path: Path, monkeypatch: pyte
     write_method(tmp_path, "mine", "x = 1")
     keys.append(_key(**base))
     write_method(tmp_path, "mine")
-    for part in ("pairs", "cells"):
+    for part in ("pairs.rendering", "experiments.execution.cells"):
         with monkeypatch.context() as patch:
             patch.setattr(f"rectbench.{part}.code_digest", lambda *_: "edited")
             keys.append(_key(**base))
@@ -160,8 +162,9 @@ def test_default_options_said_aloud_find_the_same_row() -> None:
 
 def test_images_hang_on_samples_and_the_truth_does_not() -> None:
     (few,), (many,) = (make_plan(small_report(spp=spp)).pairs for spp in (4, 8))
-    assert digest(truth_inputs(few)) == digest(truth_inputs(many))
-    assert digest(image_inputs(few)) != digest(image_inputs(many))
+    first, second = (open_pair(spec, Store.default()) for spec in (few, many))
+    assert digest(first.inputs) == digest(second.inputs)
+    assert digest(first.image_inputs) != digest(second.image_inputs)
 
 
 def test_an_edited_rig_file_changes_the_key(tmp_path: Path) -> None:

@@ -91,15 +91,20 @@ def test_no_cell_is_dropped_and_the_order_is_the_reports(misbehaved: pd.DataFram
 
 
 def test_a_cell_that_hangs_is_stopped_and_the_next_one_runs(tmp_path: Path) -> None:
+    awake = tmp_path / "awake"
+    sleeps = f"""
+        signal.signal(signal.SIGTERM, signal.SIG_IGN)
+        time.sleep(30)
+        Path({str(awake)!r}).touch()
+    """
     methods = (
-        write_method(tmp_path, "sleeps", "signal.signal(signal.SIGTERM, signal.SIG_IGN); time.sleep(600)"),
+        write_method(tmp_path, "sleeps", sleeps),
         write_method(tmp_path, "spins", "while True: pass"),
     )
-    begin = time.monotonic()
-    table = run(small_report(methods=methods, timeout_s=2.0), jobs=2)
+    table = run(small_report(methods=methods, timeout_s=2.0), jobs=1)
     assert list(table["status"]) == ["timeout", "timeout"]
     assert list(table["reason"]) == ["stopped after 2 s"] * 2
-    assert time.monotonic() - begin < 60
+    assert not awake.exists()
 
 
 def test_a_scene_that_fails_fails_its_cells_and_no_others(tmp_path: Path) -> None:
@@ -132,7 +137,7 @@ def report_of_four(tmp_path_factory: pytest.TempPathFactory) -> rb.Report:
     )
 
 
-def test_the_rows_do_not_hang_on_the_number_of_jobs(report_of_four: rb.Report, tmp_path: Path) -> None:
+def test_the_rows_do_not_depend_on_the_number_of_jobs(report_of_four: rb.Report, tmp_path: Path) -> None:
     tables = [run(report_of_four, tmp_path / f"run{jobs}", jobs=jobs, fresh=True) for jobs in (1, 3)]
     pd.testing.assert_frame_equal(*tables, check_exact=True)
     assert (tables[0]["status"] == "ok").all()
@@ -162,9 +167,7 @@ def test_a_second_run_finds_everything(tmp_path: Path) -> None:
     report = small_report(methods=(counted,), metrics=("geometry", "timing"))
     first = run(report, jobs=1)
     made = calls.read_text()
-    begin = time.monotonic()
     second = run(report, jobs=1)
-    assert time.monotonic() - begin < 5
     assert calls.read_text() == made
     pd.testing.assert_frame_equal(first, second)  # the times too: nothing was measured again
     run(report, jobs=1, fresh=True)

@@ -12,7 +12,7 @@ import pytest
 
 import rectbench as rb
 from rectbench.matching import MATCHERS, Disparity, dense_disparity
-from rectbench.matching.dense.disparity import disparity as dense
+from rectbench.matching.dense import disparity as dense
 from tests.matching.sphere_room import sphere_pair, true_disparity
 from tests.rigs_for_tests import rig
 

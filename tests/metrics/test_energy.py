@@ -1,7 +1,6 @@
 from __future__ import annotations
 
 import math
-import time
 from dataclasses import replace
 from typing import Any
 
@@ -117,10 +116,3 @@ def test_only_cubics_have_a_shape() -> None:
 def test_an_unknown_coefficient_is_named(fitted: Rectification) -> None:
     with pytest.raises(InvalidInput, match="'u4'"):
         energy_slice(fitted, "u4", "v1")
-
-
-def test_the_share_takes_a_blink(fitted: Rectification) -> None:
-    energy_convex_share(fitted)
-    start = time.perf_counter()
-    energy_convex_share(fitted)
-    assert time.perf_counter() - start < 1.0

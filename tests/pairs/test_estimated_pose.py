@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 import rectbench as rb
-from rectbench.experiments.execution.cells import believed_rig, problem_of
+from rectbench.experiments.execution.cells import problem_of
+from rectbench.experiments.execution.desk import DESK
 from rectbench.experiments.execution.running import run
 from rectbench.experiments.planning import make_plan
-from rectbench.pairs.estimating import estimated_pose
-from rectbench.pairs.pairs import placed_rig
+from rectbench.pairs.opening import open_pair
 from rectbench.store.store import Store
 from tests.experiments.fakes import small_report, write_scene
 
@@ -48,9 +48,8 @@ def test_all_methods_share_the_pose_their_images_tell(tmp_path: Path, wall: str)
 
 def test_an_estimate_reads_back_as_it_was_made(wall: str, store: Store) -> None:
     task = make_plan(report(wall)).tasks[0]
-    made = estimated_pose(task.pair, store)
-    estimated_pose.cache_clear()
-    read = estimated_pose(task.pair, store)
+    made = open_pair(task.pair, store).estimate
+    read = open_pair(task.pair, store).estimate
     assert made is not read
     for name in ("R_right_left", "direction_right_left", "covariance"):
         np.testing.assert_array_equal(getattr(made, name), getattr(read, name))
@@ -61,7 +60,8 @@ def test_an_estimate_reads_back_as_it_was_made(wall: str, store: Store) -> None:
 
 def test_the_believed_rig_has_the_true_baselines_length_alone(wall: str, store: Store) -> None:
     task = make_plan(report(wall)).tasks[0]
-    true, believed = placed_rig(task.pair), believed_rig(task, store)
+    pair = open_pair(task.pair, store)
+    true, believed = pair.rig, pair.believed_rig(task.cell.pose)
     assert believed.baseline_m == pytest.approx(true.baseline_m, rel=1e-12)
     assert (believed.R_right_left != true.R_right_left).any()
     assert believed.left == true.left
@@ -69,8 +69,8 @@ def test_the_believed_rig_has_the_true_baselines_length_alone(wall: str, store: 
 
 def test_methods_that_work_from_matches_get_those_of_the_estimate(wall: str, store: Store) -> None:
     task = make_plan(report(wall)).tasks[1]
-    estimate = estimated_pose(task.pair, store)
-    assert problem_of(task, store).known_matches is estimate.inliers
+    pair = open_pair(task.pair, store)
+    assert problem_of(task, pair).known_matches is pair.estimate.inliers
 
 
 def test_a_pair_without_a_pose_is_rows_with_a_reason(tmp_path: Path) -> None:
@@ -81,4 +81,4 @@ def test_a_pair_without_a_pose_is_rows_with_a_reason(tmp_path: Path) -> None:
         table = run(report(str(blank)), tmp_path / "out", jobs=1)
         assert table["status"].tolist() == ["unsupported"] * 2
         assert table["reason"].str.contains("expected at least 8").all()
-        estimated_pose.cache_clear()
+        DESK.clear()

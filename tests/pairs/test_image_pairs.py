@@ -8,7 +8,7 @@ import pytest
 
 from rectbench.errors import InvalidInput
 from rectbench.pairs.finding.image_pairs import image_pairs
-from rectbench.pairs.finding.pairing import Pairing
+from rectbench.pairs.finding.names import Pairing
 
 
 def touched(folder: Path, *names: str) -> Path:

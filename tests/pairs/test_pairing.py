@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from rectbench.pairs.finding.pairing import paired_files, paired_folders
+from rectbench.pairs.finding.names import paired_files, paired_folders
 
 ROOT = Path("/data")
 

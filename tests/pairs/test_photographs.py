@@ -13,7 +13,7 @@ import pytest
 import yaml
 
 import rectbench as rb
-from rectbench.pairs.finding.data_manifest import MANIFEST
+from rectbench.pairs.finding.manifest import MANIFEST
 from rectbench.pairs.finding.photographs import Photographs, find_photographs
 from tests.rigs_for_tests import rig
 

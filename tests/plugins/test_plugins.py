@@ -169,3 +169,38 @@ def test_an_xml_scene_changes_with_the_files_it_names(tmp_path: Path) -> None:
     assert first.name == "hall"
     (tmp_path / "mesh.ply").write_text("two")
     assert registry(SCENES).get(str(scene)).digest != first.digest
+
+
+class Scale(rb.Options):
+    scale: float = rb.option(1.0, "pixels of output for one of source")
+
+
+class InBrackets(rb.Rectifier[Scale]):
+    def fit(self, problem: rb.Problem, options: Scale) -> rb.Rectification: ...
+
+
+class Nested(rb.Rectifier):
+    class Options(rb.Options):
+        scale: float = rb.option(1.0, "pixels of output for one of source")
+
+    def fit(self, problem: rb.Problem, options: Options) -> rb.Rectification: ...
+
+
+class OfMatches(rb.HomographyRectifier[Scale]):
+    def homographies(self, view: rb.PinholeView, options: Scale) -> tuple: ...
+
+
+class Without(rb.Rectifier):
+    def fit(self, problem: rb.Problem, options: rb.Options) -> rb.Rectification: ...
+
+
+class Inherited(InBrackets): ...
+
+
+@pytest.mark.parametrize("method", [InBrackets, Nested, OfMatches, Inherited])
+def test_a_methods_options_stand_in_brackets_or_in_the_class(method: type[rb.Rectifier]) -> None:
+    assert list(method.Options.model_fields) == ["scale"]
+
+
+def test_a_method_without_options_has_the_empty_ones() -> None:
+    assert Without.Options is rb.Options

@@ -17,7 +17,6 @@ from rectbench.images.stereo_pair import StereoPair
 from rectbench.metrics import distortion
 from rectbench.rendering.truth import Truth
 from rectbench.reporting import Sources
-from rectbench.reporting.recall import KnownPair
 from rectbench.rigs import Rig
 from rectbench.types import Matches
 from rectbench.warps import Cubic, Epipolar, Perspective, Radial, Rectification
@@ -205,11 +204,25 @@ class FakeCloud:
         return self.pair.left[::2, ::2]
 
 
+@dataclass(frozen=True)
+class FakePair:
+    """A pair that is neither rendered nor photographed."""
+
+    images: StereoPair
+    rig: Rig
+    truth: Truth
+    matches: Matches
+    knows_truth: bool = True
+
+    def shown_matches(self) -> Matches:
+        return self.matches
+
+
 def fake_sources(width: int = 320) -> Sources:
     """Pictures without a renderer."""
     rig = fake_rig(width)
     images, truth = fake_pair(rig)
-    known = KnownPair(images, rig, Matches(*truth.matches(2000, seed=0)), truth)
+    known = FakePair(images, rig, truth, Matches(*truth.matches(2000, seed=0)))
     return Sources(
         pair=lambda result: known,
         rectification=lambda result: fake_rectification(rig, result.method),

@@ -203,7 +203,7 @@ def test_clouds_without_a_truth_have_a_row_a_method_and_one_view_of_all(
     write_run: WriteRun, sources: Sources
 ) -> None:
     run = read_run(write_run([make_row("a", "t265", "calibrated", m) for m in ("abraham", "conventional")]))
-    known = replace(sources.pair(run.results[0]), truth=None)
+    known = replace(sources.pair(run.results[0]), knows_truth=False)
     figure = draw_clouds(replace(sources, pair=lambda result: known), run.results, run.methods)
     pictures = [np.asarray(ax.images[0].get_array()) for ax in figure.axes if ax.images]
     assert len(pictures) == 4
@@ -217,7 +217,7 @@ def test_a_photographed_pair_without_matches_is_shown_without_marks(
 ) -> None:
     run = read_run(write_run([make_row("a", "t265", "calibrated", "abraham")]))
     nothing = rb.Matches(np.empty((0, 2)), np.empty((0, 2)))
-    known = replace(sources.pair(run.results[0]), matches=nothing, truth=None)
+    known = replace(sources.pair(run.results[0]), matches=nothing, knows_truth=False)
     figure = draw_rectified(replace(sources, pair=lambda result: known), run.results, run.methods)
     for ax in figure.axes:
         assert ax.images

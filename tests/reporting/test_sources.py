@@ -2,13 +2,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
 from rectbench.errors import InvalidResult
 from rectbench.metrics import distortion
-from rectbench.reporting import recall
+from rectbench.reporting import recall, sources
 from rectbench.reporting.sources import sources_of
 from rectbench.runs.run import Run, read_run
 from tests.reporting.runs import fake_rectification, fake_rig, make_row
@@ -24,13 +25,14 @@ def run_of(write_run: Callable[..., Path], monkeypatch: pytest.MonkeyPatch) -> C
     def read(native: float) -> Run:
         row = make_row("street", "t265", "exact", "abraham", distortion_native=native)
         identity = recall.identity_of(row)
-        monkeypatch.setattr(recall, "read_tasks", lambda folder: {identity: "the task"})
+        monkeypatch.setattr(recall, "read_tasks", lambda folder: {identity: SimpleNamespace(pair="the pair")})
+        monkeypatch.setattr(sources, "open_pair", lambda spec, store: SimpleNamespace(spec=spec))
         monkeypatch.setattr(recall, "recalled_rectification", refit)
         return read_run(write_run([row]))
 
     fits: list[Any] = []
 
-    def refit(task: Any) -> Any:
+    def refit(task: Any, pair: Any) -> Any:
         fits.append(task)
         assert len(fits) == 1, "fitted twice"
         return RECTIFICATION
@@ -40,9 +42,9 @@ def run_of(write_run: Callable[..., Path], monkeypatch: pytest.MonkeyPatch) -> C
 
 def test_a_cell_is_fitted_once_for_all_its_pictures(run_of: Callable[[float], Run]) -> None:
     run = run_of(float(distortion(RECTIFICATION, RIG)))
-    sources = sources_of(run)
-    assert sources.rectification(run.results[0]) is RECTIFICATION
-    assert sources.rectification(run.results[0]) is RECTIFICATION
+    found = sources_of(run)
+    assert found.rectification(run.results[0]) is RECTIFICATION
+    assert found.rectification(run.results[0]) is RECTIFICATION
 
 
 def test_a_refit_that_is_not_what_the_run_measured_is_no_picture_of_it(

@@ -7,9 +7,9 @@ import pandas as pd
 import pytest
 
 import rectbench as rb
-from rectbench.runs.comparing import compare
 from rectbench.experiments.execution.outcomes import Outcome
 from rectbench.experiments.planning import make_plan
+from rectbench.runs.comparing import compare
 from rectbench.runs.record import facts_of, table_of, write_run
 from tests.experiments.fakes import small_report
 

@@ -10,8 +10,8 @@ import pytest
 
 import rectbench as rb
 from rectbench.experiments.execution.outcomes import Outcome
-from rectbench.runs.gating import Tolerance, accept, accepted_path, gate
 from rectbench.experiments.planning import make_plan
+from rectbench.runs.gating import Tolerance, accept, accepted_path, gate
 from rectbench.runs.record import facts_of, table_of, write_run
 from tests.experiments.fakes import small_report, write_report_file
 

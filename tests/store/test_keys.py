@@ -23,7 +23,7 @@ def test_nan_has_no_key() -> None:
         canonical_json({"f": math.nan})
 
 
-def test_seeds_hang_on_identity_alone_and_are_equal_in_another_process() -> None:
+def test_seeds_depend_on_identity_alone_and_are_equal_in_another_process() -> None:
     seed = derived_seed("pose", "street", "t265", 3)
     code = "from rectbench.store.keys import derived_seed; print(derived_seed('pose', 'street', 't265', 3))"
     other = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
@@ -34,8 +34,9 @@ def test_seeds_hang_on_identity_alone_and_are_equal_in_another_process() -> None
 
 
 def test_code_digest_sees_the_sources_it_names() -> None:
-    assert code_digest("cameras") != code_digest("rigs")
-    assert code_digest("bench/cells") != code_digest("bench/pairs")
+    assert code_digest("rectbench.cameras.camera") != code_digest("rectbench.rigs.rig")
+    with pytest.raises(ValueError, match=r"no module rectbench\.pears"):
+        code_digest("rectbench.pears")
 
 
 def test_a_package_that_is_not_installed_has_no_version() -> None:

@@ -8,7 +8,8 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 import rectbench as rb
-from rectbench.formulas.arrays import namespaced
+from rectbench.formulas.evaluation import namespaced
+from rectbench.formulas.namespaces import NUMPY
 from rectbench.warps.profiles import RADIAL_LIMIT_RAD, least_slope
 
 coefficients = st.tuples(st.floats(100, 900), st.floats(-300, 300), st.floats(-200, 200))
@@ -21,7 +22,7 @@ def test_a_rising_cubic_is_inverted_to_machine_precision(
     assume(least_slope(np.array(c), low, high) > 1.0)
     cubic = rb.Cubic(12.5, *c, low, high)
     theta = np.linspace(low, high, 101)
-    back = cubic.angle(namespaced(cubic.constants), cubic(theta), np)
+    back = cubic.angle(namespaced(cubic.constants), cubic(theta), NUMPY)
     np.testing.assert_allclose(back, theta, atol=1e-11)
 
 
@@ -44,7 +45,7 @@ def test_radial_laws_have_unit_slope_on_the_axis_and_invert(law: str) -> None:
     values = profile(theta)
     assert (np.diff(values) > 0).all()
     np.testing.assert_allclose((profile(1e-6) - profile(-1e-6)) / 2e-6, 300, rtol=1e-9)
-    np.testing.assert_allclose(profile.angle(namespaced(profile.constants), values, np), theta, atol=1e-12)
+    np.testing.assert_allclose(profile.angle(namespaced(profile.constants), values, NUMPY), theta, atol=1e-12)
 
 
 def test_rays_out_of_a_profiles_range_are_invalid() -> None:

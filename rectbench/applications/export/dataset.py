@@ -27,7 +27,7 @@ from rectbench.applications.export.readme import readme_text
 from rectbench.applications.render import scene_source
 from rectbench.applications.requests.rendering import ExportRequest
 from rectbench.errors import InvalidInput
-from rectbench.pairs.pairs import RENDERING_PACKAGES, placed, render_seed, set_stage
+from rectbench.pairs.rendering import RENDERING_PACKAGES, Studio, placed, render_seed
 from rectbench.pairs.rig_numbers import rig_numbers
 from rectbench.plugins.fitting import checked_options, fit
 from rectbench.plugins.rectifier import METHODS, Options, Rectifier, pose_problem
@@ -142,7 +142,7 @@ def _write_pair(export: _Export, seed: int, mark: str, out: Path) -> dict[str, A
     rect = export.rectification(seed)
     request, name = export.request, _name(seed)
     scene = registry(SCENES).get(request.scene).name
-    stage = set_stage(scene_source(request.scene), seed, request.quality)
+    stage = Studio().stage(scene_source(request.scene), seed, request.quality)
     truth, rectified = stage.survey(rect.rig), stage.survey_rectified(rect)
     noise = render_seed(scene, export.rig.name, request.motion, seed)
     images = stage.photograph(rect.rig, seed=noise, spp=request.spp)

@@ -8,13 +8,13 @@ import numpy as np
 
 from rectbench.applications.export import file_formats as encode
 from rectbench.applications.rectification_files import SIDES, Files, description_files
-from rectbench.calibrations.writing import calibration_texts
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
 from rectbench.images.stereo_pair import StereoPair
 from rectbench.rendering.rectified_truth import RectifiedTruth
 from rectbench.rendering.truth import Truth
 from rectbench.rigs import Rig
+from rectbench.rigs.saving import calibration_texts
 
 CALIBRATIONS = {"native": "rig.yaml", "kalibr": "kalibr.yaml", "opencv": "opencv.yml"}
 """The formats of a pair's calibration, as far as they hold its lenses, and the names of their files."""

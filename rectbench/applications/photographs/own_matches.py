@@ -9,7 +9,7 @@ from rectbench.errors import InvalidInput, PoseNotFound
 from rectbench.matching.boards.corners import board_matches
 from rectbench.matching.pose.consistent import consistent_matches
 from rectbench.metrics import row_error
-from rectbench.pairs.finding.pairing import FilePair
+from rectbench.pairs.finding.names import FilePair
 from rectbench.rigs import Rig
 from rectbench.types import Images, Matches
 from rectbench.warps import Rectification

@@ -14,7 +14,7 @@ import pandas as pd
 from rectbench.applications.choose_method import Choice
 from rectbench.applications.rectification_files import Files
 from rectbench.metrics import RowError
-from rectbench.pairs.finding.pairing import FilePair, LeftOut
+from rectbench.pairs.finding.names import FilePair, LeftOut
 from rectbench.warps import Rectification
 
 ELSEWHERE_PX = 5.0

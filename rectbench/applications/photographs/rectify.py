@@ -33,7 +33,7 @@ from rectbench.images.reading import read_images
 from rectbench.matching.pose.uncalibrated import uncalibrated
 from rectbench.metrics import frame_costs
 from rectbench.pairs.finding.image_pairs import image_pairs
-from rectbench.pairs.finding.pairing import FilePair, camera_numbers
+from rectbench.pairs.finding.names import FilePair, camera_numbers
 from rectbench.plugins.fitting import checked_options, fit
 from rectbench.plugins.rectifier import METHODS, pose_problem
 from rectbench.progress import progress_for

@@ -30,6 +30,7 @@ from rectbench.applications.requests.words import (
     tables_in,
 )
 from rectbench.errors import InvalidInput
+from rectbench.plugins.defaults import DEFAULT_METHOD, UNCALIBRATED_METHOD
 
 BEST = "best"
 
@@ -79,8 +80,8 @@ class RectifyRequest(FramingRequest, OptionsRequest, RigRequest):
     method: Text | None = word(
         None,
         "A method's name, or a file; or best: all that apply are measured, each showing --coverage of the "
-        "source pixels (95 % where not given), and the least log distortion is chosen. local-homography by "
-        "default, hartley without a calibration.",
+        "source pixels (95 % where not given), and the least log distortion is chosen. "
+        f"{DEFAULT_METHOD} by default, {UNCALIBRATED_METHOD} without a calibration.",
         *METHOD,
     )
     seed: Seed = word(0, METHOD_SEED)
@@ -105,7 +106,7 @@ class RectifyRequest(FramingRequest, OptionsRequest, RigRequest):
     @property
     def method_name(self) -> str:
         """The method, or the usual one with or without a calibration."""
-        return self.method or ("hartley" if self.rig is None else "local-homography")
+        return self.method or (UNCALIBRATED_METHOD if self.rig is None else DEFAULT_METHOD)
 
 
 class PoseSettings(Request):

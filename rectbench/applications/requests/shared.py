@@ -9,6 +9,7 @@ from pydantic import BeforeValidator
 
 from rectbench.applications.requests.request import Request, number, word
 from rectbench.applications.requests.words import options_in, size_in
+from rectbench.plugins.defaults import DEFAULT_METHOD
 
 Seed = Annotated[int, number(Integral, "a whole number from 0 on", lambda n: n >= 0, "seed")]
 Positive = Annotated[float, number(Real, "a number above 0", lambda x: 0 < x < float("inf"))]
@@ -58,7 +59,7 @@ class OptionsRequest(Request):
 class MethodRequest(OptionsRequest):
     """Which method, and how it is set."""
 
-    method: Text = word("local-homography", "A method's name, or a file.", *METHOD)
+    method: Text = word(DEFAULT_METHOD, "A method's name, or a file.", *METHOD)
 
 
 class SeededMethodRequest(MethodRequest):

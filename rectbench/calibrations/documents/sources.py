@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
+import errno
 import os
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-from rectbench.calibrations.documents.documents import (
-    MAX_BYTES,
-    Section,
-    as_text,
-    parse_document,
-    read_bytes,
-    shown,
-)
+from rectbench.calibrations.documents.faults import shown
+from rectbench.calibrations.documents.sections import Section, parse_document
 from rectbench.errors import InvalidInput
+
+MAX_BYTES = 1 << 22
+"""Calibrations take kilobytes, some with every image point a few hundred; what is larger is another file."""
 
 SUFFIXES = {
     *(".yaml", ".yml", ".xml", ".json", ".toml", ".txt", ".bin", ".cameramodel", ".cfg", ".conf", ".ini", ""),
@@ -28,6 +26,36 @@ MAX_NAME = 200
 
 MAX_FILES = 200
 """Files of a folder that are looked at."""
+
+
+def read_bytes(path: str | os.PathLike[str], limit: int) -> bytes:
+    """The first `limit` bytes of a file; raises InvalidInput where there are none to be had."""
+    try:
+        if Path(path).is_fifo():  # opening it would wait for a writer
+            raise OSError(errno.ESPIPE, "a pipe")
+        with Path(path).open("rb") as stream:
+            return stream.read(limit)
+    except OSError as error:
+        raise InvalidInput(
+            f"{path}: cannot be read ({error.strerror}); expected a calibration file"
+        ) from None
+    except ValueError as error:  # a NUL in the path
+        raise InvalidInput(f"{str(path)!r}: cannot be read ({error}); expected a path") from None
+
+
+def as_text(content: bytes, path: str) -> str:
+    """The text that `content`, read up to a byte beyond `MAX_BYTES`, is; InvalidInput where it is none."""
+    if len(content) > MAX_BYTES:
+        raise InvalidInput(f"{path}: is larger than {MAX_BYTES >> 20} MiB; expected a calibration file")
+    try:
+        text = content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise InvalidInput(f"{path}: is not text (byte {error.start}); expected a calibration file") from None
+    if "\0" in text:
+        raise InvalidInput(f"{path}: is binary (byte {text.index(chr(0))}); expected a calibration file")
+    if not text.strip():
+        raise InvalidInput(f"{path}: is empty; expected a calibration file")
+    return text
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +80,7 @@ class Source:
 
     @cached_property
     def head(self) -> str:
-        """The first 4096 bytes as text, by which kinds are told that are no YAML, JSON or XML."""
+        """The first 4096 bytes as text, by which formats are recognised that are no YAML, JSON or XML."""
         return self.content[:4096].decode("utf-8-sig", errors="replace")
 
     @cached_property

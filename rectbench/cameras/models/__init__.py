@@ -1,4 +1,4 @@
-"""The projection models, one a file; importing this package registers them all."""
+"""The projection models, one a file, each registered when imported. Imports files of cameras and formulas."""
 
 from rectbench.cameras.models import (
     cahvor,

@@ -12,9 +12,10 @@ from types import SimpleNamespace
 from typing import Any, ClassVar
 
 from rectbench.cameras import brown
+from rectbench.cameras.intervals import Interval
 from rectbench.cameras.lens import FOCAL_PARAMETERS, Lens, register
-from rectbench.cameras.parameters import Interval
 from rectbench.formulas.domain import FARTHEST, PIXEL_SLACK
+from rectbench.formulas.protocol import Formulas
 
 TILT = Interval(-0.5 * math.pi, 0.5 * math.pi, low_open=True, high_open=True)
 
@@ -47,7 +48,7 @@ class Cahvor(Lens):
             "radial": radial | brown.edge(SimpleNamespace(**radial), FARTHEST),
         }
 
-    def to_plane(self, c: Any, x: Any, y: Any, z: Any, xp: Any) -> tuple[Any, Any, Any]:
+    def to_plane(self, c: Any, x: Any, y: Any, z: Any, xp: Formulas) -> tuple[Any, Any, Any]:
         a, b, depth = _about_axis(c, x, y, z)
         a, b = a / depth, b / depth
         seen = (depth > 0.0) & (xp.hypot(a, b) <= c.radial.max_radius)
@@ -56,7 +57,7 @@ class Cahvor(Lens):
         x, y, z = _about_sensor(c, a, b)
         return x / z, y / z, seen & (xp.hypot(a, b) <= FARTHEST) & (xp.hypot(x, y) <= FARTHEST * z)
 
-    def from_plane(self, c: Any, mx: Any, my: Any, xp: Any) -> tuple[Any, Any, Any, Any]:
+    def from_plane(self, c: Any, mx: Any, my: Any, xp: Formulas) -> tuple[Any, Any, Any, Any]:
         a, b, depth = _about_axis(c, mx, my, 1.0)
         a, b = a / depth, b / depth
         far = xp.maximum(xp.hypot(mx, my), xp.hypot(a, b))

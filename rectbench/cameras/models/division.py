@@ -7,7 +7,8 @@ from types import SimpleNamespace
 from typing import Any
 
 from rectbench.cameras.lens import FOCAL_PARAMETERS, RadialLens, register
-from rectbench.formulas.arrays import NUMPY
+from rectbench.formulas.namespaces import NUMPY
+from rectbench.formulas.protocol import Formulas
 
 LAST_SLOPE = 1e-4
 """Slope of θ over r, to that on the axis, at which a lens with k > 0 ends, 1e-8 rad before the fold."""
@@ -36,7 +37,7 @@ class Division(RadialLens):
         radius = min(math.sqrt((1.0 - LAST_SLOPE) / p.k), FARTHEST)
         return {"max_theta": float(self.angle(p, radius, NUMPY)), "max_radius": radius}
 
-    def radius(self, c: Any, theta: Any, xp: Any) -> Any:
+    def radius(self, c: Any, theta: Any, xp: Formulas) -> Any:
         sine, cosine = xp.sin(theta), xp.cos(theta)
         root = xp.sqrt(xp.maximum(cosine * cosine - 4.0 * c.k * sine * sine, 0.0))
         # Of two equal forms, the one whose sum does not cancel.
@@ -44,5 +45,5 @@ class Division(RadialLens):
         radius = xp.where(cosine < 0.0, behind, 2.0 * sine / (cosine + root))
         return xp.minimum(radius, c.max_radius)  # at that end a last digit of θ is worth many of r
 
-    def angle(self, c: Any, radius: Any, xp: Any) -> Any:
+    def angle(self, c: Any, radius: Any, xp: Formulas) -> Any:
         return xp.atan2(radius, 1.0 + c.k * (radius * radius))

@@ -5,9 +5,10 @@ from __future__ import annotations
 from types import SimpleNamespace
 from typing import Any, ClassVar
 
+from rectbench.cameras.intervals import Interval
 from rectbench.cameras.lens import FOCAL_PARAMETERS, Lens, register
-from rectbench.cameras.parameters import Interval
 from rectbench.cameras.sphere import distance, edge, from_sphere_plane, to_sphere_plane
+from rectbench.formulas.protocol import Formulas
 
 
 @register
@@ -26,12 +27,12 @@ class DoubleSphere(Lens):
     def derive(self, p: SimpleNamespace) -> dict[str, Any]:
         return edge(p.alpha)
 
-    def to_plane(self, c: Any, x: Any, y: Any, z: Any, xp: Any) -> tuple[Any, Any, Any]:
+    def to_plane(self, c: Any, x: Any, y: Any, z: Any, xp: Formulas) -> tuple[Any, Any, Any]:
         q = x * x + y * y
         _, beyond = distance(z, q, xp)
         return to_sphere_plane(c, x, y, c.xi * beyond + (1.0 - c.xi) * z, q, xp)
 
-    def from_plane(self, c: Any, mx: Any, my: Any, xp: Any) -> tuple[Any, Any, Any, Any]:
+    def from_plane(self, c: Any, mx: Any, my: Any, xp: Formulas) -> tuple[Any, Any, Any, Any]:
         q = mx * mx + my * my
         mz, ok = from_sphere_plane(c, q, xp)
         scale = (c.xi * mz + xp.sqrt(mz * mz + (1.0 - c.xi * c.xi) * q)) / (mz * mz + q)

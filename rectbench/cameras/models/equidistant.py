@@ -7,6 +7,7 @@ from types import SimpleNamespace
 from typing import Any
 
 from rectbench.cameras.lens import FOCAL_PARAMETERS, RadialLens, register
+from rectbench.formulas.protocol import Formulas
 
 
 @register
@@ -19,8 +20,8 @@ class Equidistant(RadialLens):
     def derive(self, p: SimpleNamespace) -> dict[str, Any]:
         return {"max_theta": math.pi, "max_radius": math.pi}
 
-    def radius(self, c: Any, theta: Any, xp: Any) -> Any:
+    def radius(self, c: Any, theta: Any, xp: Formulas) -> Any:
         return theta
 
-    def angle(self, c: Any, radius: Any, xp: Any) -> Any:
+    def angle(self, c: Any, radius: Any, xp: Formulas) -> Any:
         return radius

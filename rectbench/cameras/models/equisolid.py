@@ -8,6 +8,7 @@ from typing import Any
 
 from rectbench.cameras.lens import FOCAL_PARAMETERS, RadialLens, register
 from rectbench.formulas.domain import LEAST_SLOPE
+from rectbench.formulas.protocol import Formulas
 
 
 @register
@@ -21,8 +22,8 @@ class Equisolid(RadialLens):
         max_theta = math.pi - 2.0 * LEAST_SLOPE
         return {"max_theta": max_theta, "max_radius": 2.0 * math.sin(0.5 * max_theta)}
 
-    def radius(self, c: Any, theta: Any, xp: Any) -> Any:
+    def radius(self, c: Any, theta: Any, xp: Formulas) -> Any:
         return 2.0 * xp.sin(0.5 * theta)
 
-    def angle(self, c: Any, radius: Any, xp: Any) -> Any:
+    def angle(self, c: Any, radius: Any, xp: Formulas) -> Any:
         return 2.0 * xp.atan2(radius, xp.sqrt((2.0 - radius) * (2.0 + radius)))

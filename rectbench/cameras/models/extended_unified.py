@@ -5,9 +5,10 @@ from __future__ import annotations
 from types import SimpleNamespace
 from typing import Any, ClassVar
 
+from rectbench.cameras.intervals import POSITIVE, Interval
 from rectbench.cameras.lens import FOCAL_PARAMETERS, Lens, register
-from rectbench.cameras.parameters import POSITIVE, Interval
 from rectbench.cameras.sphere import edge, from_sphere_plane, to_sphere_plane
+from rectbench.formulas.protocol import Formulas
 
 
 @register
@@ -21,10 +22,10 @@ class ExtendedUnified(Lens):
     def derive(self, p: SimpleNamespace) -> dict[str, Any]:
         return edge(p.alpha)
 
-    def to_plane(self, c: Any, x: Any, y: Any, z: Any, xp: Any) -> tuple[Any, Any, Any]:
+    def to_plane(self, c: Any, x: Any, y: Any, z: Any, xp: Formulas) -> tuple[Any, Any, Any]:
         return to_sphere_plane(c, x, y, z, c.beta * (x * x + y * y), xp)
 
-    def from_plane(self, c: Any, mx: Any, my: Any, xp: Any) -> tuple[Any, Any, Any, Any]:
+    def from_plane(self, c: Any, mx: Any, my: Any, xp: Formulas) -> tuple[Any, Any, Any, Any]:
         mz, ok = from_sphere_plane(c, c.beta * (mx * mx + my * my), xp)
         scale = 1.0 / xp.sqrt(mx * mx + my * my + mz * mz)
         return scale * mx, scale * my, scale * mz, ok

@@ -6,8 +6,9 @@ import math
 from types import SimpleNamespace
 from typing import Any, ClassVar
 
+from rectbench.cameras.intervals import Interval
 from rectbench.cameras.lens import FOCAL_PARAMETERS, Lens, RadialLens, register
-from rectbench.cameras.parameters import Interval
+from rectbench.formulas.protocol import Formulas
 
 LEAST_OMEGA = 1e-12
 """Stands for ω = 0, the pinhole: the two differ by 1e-24 tan²θ."""
@@ -30,9 +31,9 @@ class FieldOfView(RadialLens):
             return {**constants, "max_theta": 0.5 * math.pi - 1e-9, "max_radius": 0.5 * math.pi / view}
         return {**constants, "max_theta": math.pi, "max_radius": math.pi / view}
 
-    def radius(self, c: Any, theta: Any, xp: Any) -> Any:
+    def radius(self, c: Any, theta: Any, xp: Formulas) -> Any:
         return xp.atan2(c.chord * xp.sin(theta), xp.cos(theta)) / c.view
 
-    def angle(self, c: Any, radius: Any, xp: Any) -> Any:
+    def angle(self, c: Any, radius: Any, xp: Formulas) -> Any:
         seen = radius * c.view
         return xp.atan2(xp.sin(seen), c.chord * xp.cos(seen))

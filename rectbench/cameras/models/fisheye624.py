@@ -13,9 +13,10 @@ from numpy.polynomial import Polynomial
 
 from rectbench.cameras import brown
 from rectbench.cameras.lens import FOCAL_PARAMETERS, RadialLens, register
-from rectbench.formulas.arrays import NUMPY
 from rectbench.formulas.domain import LEAST_SLOPE, first_root
 from rectbench.formulas.inversion import inverse
+from rectbench.formulas.namespaces import NUMPY
+from rectbench.formulas.protocol import Formulas
 
 RADIAL = ("k0", "k1", "k2", "k3", "k4", "k5")
 PRISM = {"p1": "p1", "p2": "p0", "s1": "s0", "s2": "s1", "s3": "s2", "s4": "s3"}
@@ -51,19 +52,19 @@ class Fisheye624(RadialLens):
             max_theta = float(self.angle(c, max_radius, NUMPY))
         return {"prism": prism, "max_theta": max_theta, "max_radius": max_radius}
 
-    def radius(self, c: Any, theta: Any, xp: Any) -> Any:
+    def radius(self, c: Any, theta: Any, xp: Formulas) -> Any:
         q = theta * theta
         return theta * (1.0 + q * (c.k0 + q * (c.k1 + q * (c.k2 + q * (c.k3 + q * (c.k4 + q * c.k5))))))
 
-    def angle(self, c: Any, radius: Any, xp: Any) -> Any:
+    def angle(self, c: Any, radius: Any, xp: Formulas) -> Any:
         start = radius * (c.max_theta / c.max_radius)
         return inverse(self.radius, c, radius, c.max_theta, c.max_radius, start, xp)
 
-    def to_plane(self, c: Any, x: Any, y: Any, z: Any, xp: Any) -> tuple[Any, Any, Any]:
+    def to_plane(self, c: Any, x: Any, y: Any, z: Any, xp: Formulas) -> tuple[Any, Any, Any]:
         a, b, ok = super().to_plane(c, x, y, z, xp)
         return *brown.distorted(c.prism, a, b, xp), ok
 
-    def from_plane(self, c: Any, mx: Any, my: Any, xp: Any) -> tuple[Any, Any, Any, Any]:
+    def from_plane(self, c: Any, mx: Any, my: Any, xp: Formulas) -> tuple[Any, Any, Any, Any]:
         a, b, ok = brown.undistorted(c.prism, mx, my, xp)
         x, y, z, _ = super().from_plane(c, a, b, xp)
         return x, y, z, ok

@@ -9,9 +9,10 @@ from typing import Any
 from numpy.polynomial import Polynomial
 
 from rectbench.cameras.lens import FOCAL_PARAMETERS, RadialLens, register
-from rectbench.formulas.arrays import NUMPY
 from rectbench.formulas.domain import LEAST_SLOPE, first_root
 from rectbench.formulas.inversion import inverse
+from rectbench.formulas.namespaces import NUMPY
+from rectbench.formulas.protocol import Formulas
 
 
 @register
@@ -27,10 +28,10 @@ class KannalaBrandt(RadialLens):
         max_theta = min(math.pi, math.sqrt(first_root(slope - LEAST_SLOPE * stretch)))
         return {"max_theta": max_theta, "max_radius": self.radius(p, max_theta, NUMPY)}
 
-    def radius(self, c: Any, theta: Any, xp: Any) -> Any:
+    def radius(self, c: Any, theta: Any, xp: Formulas) -> Any:
         q = theta * theta
         return theta * (1.0 + q * (c.k1 + q * (c.k2 + q * (c.k3 + q * c.k4))))
 
-    def angle(self, c: Any, radius: Any, xp: Any) -> Any:
+    def angle(self, c: Any, radius: Any, xp: Formulas) -> Any:
         start = radius * (c.max_theta / c.max_radius)
         return inverse(self.radius, c, radius, c.max_theta, c.max_radius, start, xp)

@@ -11,9 +11,10 @@ from numpy.polynomial import Polynomial
 
 from rectbench.cameras.lens import RadialLens, register
 from rectbench.errors import InvalidInput
-from rectbench.formulas.arrays import NUMPY
 from rectbench.formulas.domain import LEAST_SLOPE, first_root
 from rectbench.formulas.inversion import inverse
+from rectbench.formulas.namespaces import NUMPY
+from rectbench.formulas.protocol import Formulas
 
 FARTHEST_RADIUS = 1e3
 """Where a lens that never folds ends, in units of a0: within a fraction of a degree of straight back."""
@@ -52,13 +53,13 @@ class OCam(RadialLens):
             return {"determinant": determinant, **_from_inverse_polynomial(p.inverse_poly)}
         raise InvalidInput("ocam lacks poly and inverse_poly; expected the coefficients of one of them")
 
-    def radius(self, c: Any, theta: Any, xp: Any) -> Any:
+    def radius(self, c: Any, theta: Any, xp: Formulas) -> Any:
         if c.depth:
             return inverse(self.angle, c, theta, c.max_radius, c.max_theta, theta * c.depth[0], xp)
         near = xp.minimum(theta * c.fading, 1.0)
         return theta * horner(c.slopes, theta) + c.hole * near * (2.0 - near)
 
-    def angle(self, c: Any, radius: Any, xp: Any) -> Any:
+    def angle(self, c: Any, radius: Any, xp: Formulas) -> Any:
         if c.depth:
             return xp.atan2(radius, horner(c.depth, radius))
         start = radius * (c.max_theta / c.max_radius)

@@ -8,6 +8,7 @@ from typing import Any
 
 from rectbench.cameras.lens import FOCAL_PARAMETERS, RadialLens, register
 from rectbench.formulas.domain import LEAST_SLOPE
+from rectbench.formulas.protocol import Formulas
 
 
 @register
@@ -21,8 +22,8 @@ class Orthographic(RadialLens):
         max_theta = 0.5 * math.pi - LEAST_SLOPE
         return {"max_theta": max_theta, "max_radius": math.sin(max_theta)}
 
-    def radius(self, c: Any, theta: Any, xp: Any) -> Any:
+    def radius(self, c: Any, theta: Any, xp: Formulas) -> Any:
         return xp.sin(theta)
 
-    def angle(self, c: Any, radius: Any, xp: Any) -> Any:
+    def angle(self, c: Any, radius: Any, xp: Formulas) -> Any:
         return xp.atan2(radius, xp.sqrt((1.0 - radius) * (1.0 + radius)))

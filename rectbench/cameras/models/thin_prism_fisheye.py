@@ -13,6 +13,7 @@ from rectbench.cameras.lens import FOCAL_PARAMETERS, RadialLens, register
 from rectbench.formulas.domain import LEAST_SLOPE, first_root
 from rectbench.formulas.inversion import invert_in_disk
 from rectbench.formulas.monotone import edge_of_disk, monotone_radius
+from rectbench.formulas.protocol import Formulas
 
 COEFFICIENTS = ("k1", "k2", "p1", "p2", "k3", "k4", "sx1", "sy1")
 
@@ -33,23 +34,23 @@ class ThinPrismFisheye(RadialLens):
         edge = edge_of_disk(distorted, p, radius)
         return {**edge, "max_theta": edge["max_radius"]}
 
-    def radius(self, c: Any, theta: Any, xp: Any) -> Any:
+    def radius(self, c: Any, theta: Any, xp: Formulas) -> Any:
         return theta
 
-    def angle(self, c: Any, radius: Any, xp: Any) -> Any:
+    def angle(self, c: Any, radius: Any, xp: Formulas) -> Any:
         return radius
 
-    def to_plane(self, c: Any, x: Any, y: Any, z: Any, xp: Any) -> tuple[Any, Any, Any]:
+    def to_plane(self, c: Any, x: Any, y: Any, z: Any, xp: Formulas) -> tuple[Any, Any, Any]:
         a, b, ok = super().to_plane(c, x, y, z, xp)
         return *distorted(c, a, b, xp), ok
 
-    def from_plane(self, c: Any, mx: Any, my: Any, xp: Any) -> tuple[Any, Any, Any, Any]:
+    def from_plane(self, c: Any, mx: Any, my: Any, xp: Formulas) -> tuple[Any, Any, Any, Any]:
         a, b, ok = invert_in_disk(distorted, c, mx, my, c.max_radius, c.reach, xp)
         x, y, z, _ = super().from_plane(c, a, b, xp)
         return x, y, z, ok
 
 
-def distorted(c: Any, a: Any, b: Any, xp: Any) -> tuple[Any, Any]:
+def distorted(c: Any, a: Any, b: Any, xp: Formulas) -> tuple[Any, Any]:
     """Where the lens puts the point (a, b) of the equidistant plane."""
     q = a * a + b * b
     radial = 1.0 + q * (c.k1 + q * (c.k2 + q * (c.k3 + q * c.k4)))

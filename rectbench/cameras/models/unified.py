@@ -7,10 +7,11 @@ from types import SimpleNamespace
 from typing import Any, ClassVar
 
 from rectbench.cameras.brown import COEFFICIENTS, distorted, edge, undistorted
+from rectbench.cameras.intervals import Interval
 from rectbench.cameras.lens import FOCAL_PARAMETERS, Lens, register
-from rectbench.cameras.parameters import Interval
 from rectbench.cameras.sphere import distance
 from rectbench.formulas.domain import LEAST_SLOPE, RAY_SLACK
+from rectbench.formulas.protocol import Formulas
 
 
 @register
@@ -37,14 +38,14 @@ class Unified(Lens):
         cosine = (p.xi + LEAST_SLOPE) / (1 + touching**2) - p.xi
         return {**vars(brown), **edge(brown, touching, slope), "least_cosine": cosine}
 
-    def to_plane(self, c: Any, x: Any, y: Any, z: Any, xp: Any) -> tuple[Any, Any, Any]:
+    def to_plane(self, c: Any, x: Any, y: Any, z: Any, xp: Formulas) -> tuple[Any, Any, Any]:
         length, beyond = distance(z, x * x + y * y, xp)
         depth = c.xi * beyond + (1.0 - c.xi) * z
         a, b = x / depth, y / depth
         seen = (depth > 0.0) & (z >= (c.least_cosine - RAY_SLACK) * length)
         return *distorted(c, a, b, xp), seen & (xp.hypot(a, b) <= c.max_radius)
 
-    def from_plane(self, c: Any, mx: Any, my: Any, xp: Any) -> tuple[Any, Any, Any, Any]:
+    def from_plane(self, c: Any, mx: Any, my: Any, xp: Formulas) -> tuple[Any, Any, Any, Any]:
         a, b, ok = undistorted(c, mx, my, xp)
         q = a * a + b * b
         scale = (c.xi + xp.sqrt(1.0 + (1.0 - c.xi * c.xi) * q)) / (1.0 + q)

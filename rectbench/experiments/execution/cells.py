@@ -4,73 +4,43 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Callable
 from dataclasses import asdict
-from functools import lru_cache
 from pathlib import Path
-from typing import TypeVar
 
-import numpy as np
-
-from rectbench.errors import InvalidInput, PoseNotFound
+from rectbench.experiments.execution.desk import DESK
 from rectbench.experiments.execution.outcomes import LASTING, Outcome, outcome_of
-from rectbench.experiments.spec import CALIBRATED, ESTIMATED, IMAGE_METRICS
 from rectbench.experiments.tasks import CellTask
-from rectbench.matching import BoardMatches, agreeing_matches, board_matches, reconstruct
-from rectbench.metrics import (
-    Jacobians,
-    distortion_columns,
-    energy_convex_share,
-    measure,
-    reconstruction_scores,
-)
-from rectbench.pairs.estimating import calibration_columns, estimate_from_images, estimated_pose, pose_columns
-from rectbench.pairs.features import scored_features
-from rectbench.pairs.pairs import (
-    give_memory_back,
-    image_inputs,
-    load_images,
-    load_truth,
-    make_pair,
-    placed_rig,
-    truth_inputs,
-)
-from rectbench.pairs.spec import PairSpec, PhotographedSpec, RenderedSpec
-from rectbench.plugins.fitting import check_result, checked_options, fit
+from rectbench.metrics.scoring import needs_of, score, scoring_digest
+from rectbench.pairs.pair import Pair
+from rectbench.pairs.rendered import RenderedPair
+from rectbench.pairs.rendering import give_memory_back
+from rectbench.pairs.spec import ESTIMATED, RenderedSpec
+from rectbench.plugins.fitting import check_result, checked_options
+from rectbench.plugins.metric import Case
 from rectbench.plugins.rectifier import METHODS, Problem, pose_problem
 from rectbench.registry import registry
-from rectbench.rendering.truth import Truth
-from rectbench.rigs import Rig
-from rectbench.rigs.poses import POSES, perturb
-from rectbench.store.keys import Inputs, code_digest, derived_seed, versions
+from rectbench.store.keys import Inputs, code_digest, versions
 from rectbench.store.store import Store
-from rectbench.types import Images, Matches
+from rectbench.types import Images
 from rectbench.warps import Rectification
 
 CELLS = "cells"
 ROW = "row.json"
 MEASURING_PACKAGES = ("numpy", "scipy", "opencv-contrib-python-headless", "drjit", "pydantic")
 
-SCORED_MATCHES = 10_000
-"""Correspondences the row error is taken over."""
 
-REPEATS = 3
-SLOW_CALL_S = 1.0
-
-Result = TypeVar("Result")
-
-
-def cell_inputs(task: CellTask) -> Inputs:
+def cell_inputs(task: CellTask, pair: Pair) -> Inputs:
     """All that shapes the row of a cell; its report's name does not."""
     method = registry(METHODS).get(task.method_source)
     return {
-        "truth": truth_inputs(task.pair),
-        "images": image_inputs(task.pair) if uses_images(task) else None,
+        "pair": pair.inputs,
+        "images": pair.image_inputs if uses_images(task, pair) else None,
         "pose": task.cell.pose,
         "method": method.name,
         "method_source": method.digest,
         "options": checked_options(method, task.options).model_dump(mode="json"),
         "metrics": sorted(task.metrics),
+        "metrics_source": scoring_digest(task.metrics),
         "match_count": task.match_count,
         "match_noise_px": task.match_noise_px,
         "code": code_digest(__name__),
@@ -78,16 +48,16 @@ def cell_inputs(task: CellTask) -> Inputs:
     }
 
 
-def uses_images(task: CellTask) -> bool:
-    """Whether the row of a cell hangs on its images, as that of photographs always does."""
+def uses_images(task: CellTask, pair: Pair) -> bool:
+    """Whether the row of a cell depends on its images, as that of photographs always does."""
     needs = registry(METHODS).get(task.method_source).value.needs
-    asked = "images" in needs or task.cell.pose == ESTIMATED or not IMAGE_METRICS.isdisjoint(task.metrics)
-    return asked or isinstance(task.pair, PhotographedSpec)
+    asked = "images" in needs | needs_of(task.metrics) or task.cell.pose == ESTIMATED
+    return asked or not pair.knows_truth
 
 
-def stored_outcome(task: CellTask, store: Store) -> Outcome | None:
+def stored_outcome(task: CellTask, pair: Pair) -> Outcome | None:
     """What an earlier run found for this cell; None where it has to be run."""
-    folder = store.read(CELLS, cell_inputs(task))
+    folder = pair.store.read(CELLS, cell_inputs(task, pair))
     if folder is None:
         return None
     return Outcome(**json.loads((folder / ROW).read_text(encoding="utf-8")))
@@ -95,197 +65,65 @@ def stored_outcome(task: CellTask, store: Store) -> Outcome | None:
 
 def run_cell(task: CellTask, store_root: Path) -> Outcome:
     """Run a cell and store how it ended; whatever a plugin raises becomes a status."""
-    store = Store(store_root)
+    pair = DESK.pair(task.pair, Store(store_root))
     try:
-        outcome = _measured(task, store)
+        outcome = _measured(task, pair)
     except BaseException as error:  # a plugin may raise anything, SystemExit and KeyboardInterrupt too
         outcome = outcome_of(error)
-    keep(task, outcome, store)
+    keep(task, pair, outcome)
     give_memory_back()
     return outcome
 
 
-def keep(task: CellTask, outcome: Outcome, store: Store) -> None:
+def keep(task: CellTask, pair: Pair, outcome: Outcome) -> None:
     """Store how a cell ended, if it would end so again."""
     if outcome.status in LASTING:
-        store.write_text(CELLS, cell_inputs(task), ROW, json.dumps(asdict(outcome)))
+        pair.store.write_text(CELLS, cell_inputs(task, pair), ROW, json.dumps(asdict(outcome)))
 
 
-def run_pair(pair: RenderedSpec, store_root: Path) -> Outcome:
+def run_pair(spec: RenderedSpec, store_root: Path) -> Outcome:
     """Render a pair into the store; whatever a scene raises becomes a status."""
+    pair = DESK.pair(spec, Store(store_root))
+    assert isinstance(pair, RenderedPair)
     try:
-        make_pair(pair, Store(store_root))
+        pair.make()
     except BaseException as error:  # a plugin may raise anything
         return outcome_of(error)
     return Outcome()
 
 
-def believed_rig(task: CellTask, store: Store) -> Rig:
-    """What the rectifier is told: the true rig with its pose perturbed, or estimated from the images.
-
-    Of photographs it is the calibrated rig as it is, or in the pose that the images tell. Images do not
-    tell how long a baseline is: the known length stands in an estimated rig, too.
-    """
-    cell, rig = task.cell, placed_rig(task.pair)
-    if cell.pose == ESTIMATED:
-        return estimated_pose(task.pair, store).rig(rig)
-    if cell.pose == CALIBRATED:
-        return rig
-    # Not named after the method: all methods of a pair are misled in the same way.
-    seed = derived_seed("pose", cell.scene, cell.rig, cell.motion, cell.pose, cell.seed)
-    return perturb(rig, POSES[cell.pose], seed)
-
-
-def problem_of(task: CellTask, store: Store) -> Problem:
+def problem_of(task: CellTask, pair: Pair) -> Problem:
     """What the cell's rectifier may know."""
     cell, needs = task.cell, registry(METHODS).get(task.method_source).value.needs
-    images = load_images(task.pair, store) if "images" in needs else None
+    matches = (
+        pair.given_matches(cell.pose, task.match_count, task.match_noise_px) if "matches" in needs else None
+    )
     return pose_problem(
-        believed_rig(task, store),
-        matches=_given_matches(task, store) if "matches" in needs else None,
-        images=Images(images.left, images.right) if images else None,
-        seed=derived_seed("method", cell.scene, cell.rig, cell.motion, cell.pose, cell.method, cell.seed),
+        pair.believed_rig(cell.pose),
+        matches=matches,
+        images=Images(pair.images.left, pair.images.right) if "images" in needs else None,
+        seed=pair.seed_of("method", cell.pose, cell.method),
     )
 
 
-def _given_matches(task: CellTask, store: Store) -> Matches:
-    """What a method that works from matches gets: those of the estimate, else true ones with noise.
-
-    Photographs have no true ones: theirs are those of the estimate, whatever pose the others are told.
-    """
-    cell = task.cell
-    if cell.pose == ESTIMATED or isinstance(task.pair, PhotographedSpec):
-        return estimated_pose(task.pair, store).inliers
-    seed = derived_seed("matches", cell.scene, cell.rig, cell.motion, cell.seed)
-    truth = _truth(task.pair, store)
-    return Matches(*truth.matches(task.match_count, seed=seed, noise_px=task.match_noise_px))
-
-
-@lru_cache(maxsize=1)
-def _true_matches(pair: PairSpec, store: Store) -> Matches:
-    return Matches(*_truth(pair, store).matches(SCORED_MATCHES))
-
-
-@lru_cache(maxsize=1)
-def feature_matches(pair: PairSpec, by_estimate: bool, store: Store) -> Matches:
-    """Freed of wrong matches by the true pose; or, as the paper frees its own, by the estimated one.
-
-    Of photographs those that agree on the pose in the images, whatever the calibration says: it may be
-    what is wrong. Raises PoseNotFound where photographs tell none.
-    """
-    rig = placed_rig(pair)
-    if isinstance(pair, PhotographedSpec):
-        photographs = load_images(pair, store)
-        images = Images(photographs.left, photographs.right)
-        return agreeing_matches(estimated_pose(pair, store), rig.left, rig.right, images)
-    known = estimated_pose(pair, store).rig(rig) if by_estimate else rig
-    return scored_features(load_images(pair, store), known)
-
-
-@lru_cache(maxsize=1)
-def corners_of_board(pair: PairSpec, store: Store) -> BoardMatches | None:
-    """The corners of a calibration board that both images of a pair show; None where they show none."""
-    images = load_images(pair, store)
-    return board_matches(images.left, images.right)
-
-
-@lru_cache(maxsize=1)
-def _truth(pair: PairSpec, store: Store) -> Truth:
-    """Kept, since the methods of one pair run one after another."""
-    if isinstance(pair, PhotographedSpec):
-        raise InvalidInput(f"nobody knows the truth about the photographs of {pair.scene}")
-    return load_truth(pair, store)
-
-
-def _measured(task: CellTask, store: Store) -> Outcome:
+def _measured(task: CellTask, pair: Pair) -> Outcome:
     method = registry(METHODS).get(task.method_source)
-    if isinstance(task.pair, PhotographedSpec):
-        load_images(task.pair, store)  # raises for images that are not the calibration's
-    options, problem = checked_options(method, task.options), problem_of(task, store)
-    columns: dict[str, float] = {}
-    if "timing" in task.metrics:
-        rectification, columns["fit_s"] = timed(lambda: method.value.fit(problem, options))
-        check_result(method.name, rectification, problem)
-    else:
-        rectification = fit(method, problem, options)
-    scores, remarks = _scores(task, rectification, store)
-    columns |= scores
-    if "timing" in task.metrics:
-        columns |= _warp_times(rectification)
-        if task.cell.pose == ESTIMATED:
-            columns["pose_s"] = _pose_time(task.pair, store)
-            columns["total_s"] = columns["pose_s"] + columns["fit_s"] + columns["warp_s"]
-    return Outcome(metrics=columns, notes={**rectification.notes, **remarks})
+    pair.require()
+    options, problem = checked_options(method, task.options), problem_of(task, pair)
 
+    def fit() -> Rectification:
+        return method.value.fit(problem, options)
 
-def _scores(
-    task: CellTask, rectification: Rectification, store: Store
-) -> tuple[dict[str, float], dict[str, str]]:
-    """The columns of the row, and what is to be said of them."""
-    pair, asked, by_estimate = task.pair, task.metrics, task.cell.pose == ESTIMATED
-    rig, remarks = placed_rig(pair), dict[str, str]()
-    features, board = None, corners_of_board(pair, store) if "row_error_board" in asked else None
-    if board is not None:
-        remarks["board"] = board.kind
-    if "row_error_features" in asked:
-        try:
-            features = feature_matches(pair, by_estimate, store)
-        except PoseNotFound as failure:
-            remarks["no_features"] = str(failure)
-    columns = measure(
+    start = time.perf_counter()
+    rectification = fit()
+    first_fit_s = time.perf_counter() - start
+    check_result(method.name, rectification, problem)
+    case = Case(
         rectification,
-        rig,
-        geometry="geometry" in asked,
-        true_matches=_true_matches(pair, store) if "row_error" in asked else None,
-        feature_matches=features,
-        board_matches=board.matches if board else None,
+        pair,
+        pose_is_estimated=task.cell.pose == ESTIMATED,
+        fit=fit,
+        first_fit_s=first_fit_s,
     )
-    if "distortion" in asked:
-        columns |= distortion_columns(Jacobians.at(rectification))
-    if by_estimate:
-        estimate = estimated_pose(pair, store)
-        if isinstance(pair, PhotographedSpec):
-            columns |= calibration_columns(estimate, rig)
-            if contradiction := estimate.contradiction(rig):
-                remarks["contradiction"] = contradiction
-        else:
-            columns |= pose_columns(estimate, rig)
-    if "energy" in asked:
-        columns["energy_convex_share"] = energy_convex_share(rectification)
-    if "reconstruction" in asked:
-        images = load_images(pair, store)
-        found = reconstruct(rectification, images.left, images.right)
-        columns |= reconstruction_scores(found, _truth(pair, store))
-    return columns, remarks
-
-
-@lru_cache(maxsize=1)
-def _pose_time(pair: PairSpec, store: Store) -> float:
-    """Seconds from the two images, in memory, to the pose."""
-    images = load_images(pair, store)
-    return timed(lambda: estimate_from_images(pair, images))[1]
-
-
-def _warp_times(rectification: Rectification) -> dict[str, float]:
-    _, maps_s = timed(lambda: (rectification.maps("left"), rectification.maps("right")))
-    left, right = (
-        np.full((camera.height, camera.width, 3), 127, dtype=np.uint8)
-        for camera in (rectification.left.source, rectification.right.source)
-    )
-    _, both_s = timed(lambda: rectification.remap(left, right))
-    return {"maps_s": maps_s, "warp_s": both_s}
-
-
-def timed(call: Callable[[], Result]) -> tuple[Result, float]:
-    """The result of `call` and the seconds it takes warm: the best of 3 calls after a first one.
-
-    A call of more than a second is timed as it is: it hardly feels that the caches were cold.
-    """
-    seconds: list[float] = []
-    while len(seconds) <= REPEATS:
-        start = time.perf_counter()
-        result = call()
-        seconds.append(time.perf_counter() - start)
-        if seconds[0] > SLOW_CALL_S:
-            return result, seconds[0]
-    return result, min(seconds[1:])
+    columns = score(case, task.metrics)
+    return Outcome(metrics=columns, notes={**rectification.notes, **case.remarks})

@@ -19,6 +19,7 @@ from typing import Any
 
 from rectbench.errors import RectbenchError, Unavailable
 from rectbench.experiments.execution.cells import cell_inputs, run_cell
+from rectbench.experiments.execution.desk import DESK
 from rectbench.experiments.execution.outcomes import Outcome
 from rectbench.experiments.execution.worker import Limits, restrict
 from rectbench.experiments.tasks import CellTask
@@ -29,9 +30,9 @@ CONNECT_TIMEOUT_S = 10
 
 
 def run_on_cluster(
-    address: str, tasks: Sequence[CellTask], *, timeout_s: float, limits: Limits
+    address: str, tasks: Sequence[tuple[CellTask, str]], *, timeout_s: float, limits: Limits
 ) -> Iterator[tuple[int, Outcome]]:
-    """The outcome of each task with its index, as they end.
+    """The outcome of each task with its index, as they end; beside a task stands the digest of its inputs.
 
     Raises Unavailable where dask is not installed or no scheduler answers at `address`.
     """
@@ -45,10 +46,10 @@ def run_on_cluster(
         raise Unavailable(f"no dask scheduler answers at {address}: {' '.join(str(error).split())}") from None
     with client:
         index_of = {}
-        for index, task in enumerate(tasks):
+        for index, (task, inputs) in enumerate(tasks):
             message = {
                 "task": task.model_dump(mode="json"),
-                "inputs": digest(cell_inputs(task)),
+                "inputs": inputs,
                 "limits": asdict(limits),
             }
             future = client.submit(run_isolated, message, timeout_s, pure=False)
@@ -82,13 +83,14 @@ def _died(error: BaseException) -> Outcome:
 def _answer(message: dict[str, Any]) -> Outcome:
     restrict(Limits(**message["limits"]))
     task = CellTask.model_validate(message["task"])
+    store = Store.default()
     try:
-        inputs = digest(cell_inputs(task))
+        inputs = digest(cell_inputs(task, DESK.pair(task.pair, store)))
     except RectbenchError as error:
         return Outcome("unavailable", f"on the cluster: {error}")
     if inputs != message["inputs"]:
         return Outcome("unavailable", "the cluster has other versions of rectbench, its plugins or libraries")
-    return run_cell(task, Store.default().root)
+    return run_cell(task, store.root)
 
 
 if __name__ == "__main__":

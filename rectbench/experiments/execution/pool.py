@@ -129,7 +129,7 @@ class Workers:
         """The job that shares most with the slot's last one, and next least with those of other slots."""
         others = {group for other in self._slots if other is not slot for group in other.groups}
 
-        def strangeness(index: int) -> tuple[list[bool], int, int]:
+        def switching_cost(index: int) -> tuple[list[bool], int, int]:
             groups = jobs[index].groups
             return (
                 [group not in slot.groups for group in groups],
@@ -137,7 +137,7 @@ class Workers:
                 index,
             )
 
-        return min(waiting, key=strangeness)
+        return min(waiting, key=switching_cost)
 
     def _ended(self) -> list[_Slot]:
         futures = [slot.future for slot in self._slots if slot.future]

@@ -19,11 +19,13 @@ from rectbench.experiments.execution.worker import Limits
 from rectbench.experiments.planning import Plan, Selection, find_report, make_plan
 from rectbench.experiments.spec import Report
 from rectbench.experiments.tasks import CellTask
-from rectbench.pairs.pairs import IMAGES, TRUTH, image_inputs, is_made, truth_inputs
+from rectbench.pairs.opening import open_pair
+from rectbench.pairs.pair import Pair
 from rectbench.pairs.spec import RenderedSpec
 from rectbench.progress import Progress, progress_for
 from rectbench.registry import is_path
 from rectbench.runs.record import check_writable, facts_of, table_of, write_run
+from rectbench.store.keys import digest
 from rectbench.store.store import Store
 
 RUNS = Path("runs")
@@ -66,7 +68,7 @@ def run(
         before a name adds it to the report's own.
     data : the folder of photographs, for a report that takes them.
     options : options by method and name, laid over the report's.
-    jobs : worker processes; as many as there are cores by default. The rows do not hang on it.
+    jobs : worker processes; as many as there are cores by default. The rows do not depend on it.
     dask : address of a dask.distributed scheduler that runs the cells in the place of local workers.
     fresh : make again what the store has of this run.
     progress : bars on stderr; on a terminal alone by default.
@@ -118,21 +120,23 @@ class _Runner:
 
     def __init__(self, plan: Plan, store: Store, jobs: int, threads: int, progress: Progress) -> None:
         self.plan, self.store, self.jobs, self.progress = plan, store, jobs, progress
+        self.pairs = {spec: open_pair(spec, store) for spec in plan.pairs}
         self.limits = Limits(threads, round(plan.report.memory_gib * 2**30))
 
     def forget(self) -> None:
         """Drop from the store what this plan would find there."""
         for task in self.plan.tasks:
-            self.store.drop(self.store.place(CELLS, cell_inputs(task)))
-        for pair in self.plan.pairs:
-            if isinstance(pair, RenderedSpec):
-                self.store.drop(self.store.place(TRUTH, truth_inputs(pair)))
-                self.store.drop(self.store.place(IMAGES, image_inputs(pair)))
+            self.store.drop(self.store.place(CELLS, cell_inputs(task, self._pair(task))))
+        for pair in self.pairs.values():
+            pair.forget()
+
+    def _pair(self, task: CellTask) -> Pair:
+        return self.pairs[task.pair]
 
     def outcomes(self, dask: str | None) -> list[Outcome]:
         """The outcome of each task, in the plan's order."""
         tasks = self.plan.tasks
-        found = [stored_outcome(task, self.store) for task in tasks]
+        found = [stored_outcome(task, self._pair(task)) for task in tasks]
         try:
             if dask is not None:
                 self._run_on_cluster(dask, found)
@@ -170,12 +174,12 @@ class _Runner:
             for task, outcome in zip(self.plan.tasks, found, strict=True)
             if isinstance(task.pair, RenderedSpec) and (outcome is None or task.pair.images)
         )
-        missing = [pair for pair in wanted if not is_made(pair, self.store)]
+        missing = [spec for spec in wanted if not self.pairs[spec].is_made]
         if not missing:
             return
         failed = {}
         with self.progress.stage("rendering", len(missing)) as advance:
-            for position, outcome in workers.run([self._pair_job(pair) for pair in missing]):
+            for position, outcome in workers.run([self._pair_job(spec) for spec in missing]):
                 if not outcome.ok:
                     failed[missing[position]] = outcome
                 advance()
@@ -184,9 +188,9 @@ class _Runner:
                 pair = failed[task.pair]
                 found[index] = replace(pair, reason=f"rendering the pair: {pair.reason}")
 
-    def _pair_job(self, pair: RenderedSpec) -> Job:
-        arguments = (pair, self.store.root)
-        return Job(run_pair, arguments, self.plan.report.render_timeout_s, ((pair.scene_source, pair.seed),))
+    def _pair_job(self, spec: RenderedSpec) -> Job:
+        arguments = (spec, self.store.root)
+        return Job(run_pair, arguments, self.plan.report.render_timeout_s, ((spec.scene_source, spec.seed),))
 
     def _cell_job(self, task: CellTask) -> Job:
         return Job(run_cell, (task, self.store.root), self.plan.report.timeout_s, (task.pair,))
@@ -196,14 +200,15 @@ class _Runner:
 
         missing = [index for index, outcome in enumerate(found) if outcome is None]
         report = self.plan.report
+        tasks = [self.plan.tasks[index] for index in missing]
         ended: Iterable[tuple[int, Outcome]] = run_on_cluster(
             address,
-            [self.plan.tasks[index] for index in missing],
+            [(task, digest(cell_inputs(task, self._pair(task)))) for task in tasks],
             timeout_s=report.timeout_s + report.render_timeout_s,  # the first cell of a pair renders it
             limits=self.limits,
         )
         with self.progress.stage("cells", len(missing)) as advance:
             for position, outcome in ended:
                 found[missing[position]] = outcome
-                keep(self.plan.tasks[missing[position]], outcome, self.store)
+                keep(tasks[position], self._pair(tasks[position]), outcome)
                 advance()

@@ -1,1 +1,1 @@
-"""Calibration boards found in both images."""
+"""Calibration boards found in both images: chessboards and tags. Imports images and types alone."""

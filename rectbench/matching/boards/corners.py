@@ -1,6 +1,6 @@
 """Corners of a calibration board that both images show, matched by the board itself.
 
-They are the matches to trust: the board says which corner is which, so that none is wrong, and a corner is
+They are the matches to trust: the board tells which corner is which, so that none is wrong, and a corner is
 found to a few hundredths of a pixel. On boards rendered through perspective and fisheye lenses with noise,
 `cv2.cornerSubPix` is off by 0.02 to 0.06 px (RMS of a coordinate), without a common shift. OpenCV's own
 chessboard corners, from which the search starts here, are off by up to half a pixel under a fisheye lens.
@@ -24,7 +24,7 @@ from rectbench.types import FloatArray, Matches
 LEAST_TAGS = 4
 """Tags seen in both images; of fewer, a chance pattern may be one."""
 NEIGHBOURS, AGREEMENT_STEPS = 12, 10
-"""Corners about a tag's corner that say where it should be, and steps of the robust fit to them."""
+"""Neighbours of a tag's corner that predict its place, and steps of the robust fit to them."""
 AGREEING_PX, WITHIN_MEDIANS = 0.5, 4.0
 """A corner farther off than both, the latter times the median, is not the same in both images."""
 BEGINNINGS = ((4, 4), (6, 5))
@@ -52,7 +52,15 @@ WINDOW, LEAST_WINDOW, MOST_WINDOW = 0.3, 2, 10
 
 @dataclass(frozen=True, eq=False)
 class BoardMatches:
-    """The corners of one board in both images."""
+    """The corners of one board in both images.
+
+    >>> import numpy as np
+    >>> import rectbench as rb
+    >>> corners = np.array([[10.0, 20.0], [30.0, 20.0]])
+    >>> found = rb.BoardMatches(rb.Matches(corners, corners - [5, 0]), "chessboard 2x1")
+    >>> (found.matches.left - found.matches.right)[:, 0]
+    array([5., 5.])
+    """
 
     matches: Matches
     """[N, 2] each."""
@@ -67,6 +75,16 @@ def board_matches(left: NDArray[np.generic], right: NDArray[np.generic]) -> Boar
     images with its outer squares; where turning it by 180° changes nothing, the images are taken to be
     upright alike. Of tags (AprilTag 36h11, with Kalibr's border, too, and ArUco) four have to be in both
     images. Raises InvalidInput for arrays that are no images.
+
+    >>> import numpy as np
+    >>> import rectbench as rb
+    >>> squares = np.kron(np.indices((7, 9)).sum(axis=0) % 2, np.ones((16, 16)))
+    >>> image = np.pad(np.uint8(255 * squares), 24, constant_values=255)
+    >>> found = rb.board_matches(image, np.roll(image, -5, axis=1))
+    >>> found.kind
+    'chessboard 8x6'
+    >>> np.ptp(found.matches.left - found.matches.right, axis=0).round(2)
+    array([0., 0.])
     """
     images = grey8(left, "left"), grey8(right, "right")
     return _tag_matches(*images) or _chessboard_matches(*images)
@@ -94,7 +112,7 @@ def _tag_matches(left: Grey, right: Grey) -> BoardMatches | None:
 
 
 def _agreeing(matches: Matches) -> Matches:
-    """The matches [N, 2] that lie where those about them say, by the affine map from left to right there.
+    """The matches [N, 2] that lie where their neighbours predict, by a local affine map from left to right.
 
     A tag's corner may be mistaken for one of the square beside it, in one image and not in the other.
     """

@@ -1,1 +1,1 @@
-"""Dense disparity and the points it gives."""
+"""Dense disparity and the points it gives. Imports warps, images and what is below."""

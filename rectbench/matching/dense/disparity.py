@@ -115,7 +115,7 @@ def dense_disparity(
     nearest_baselines : nearest distance from the left camera at which things are sought, in
         baselines; the farthest is infinity. Both follow from the warps, whatever their columns are.
 
-    What a matcher finds counts where the right image says the same (left-right check) in pixels that
+    What a matcher finds counts where the right image agrees (left-right check) in pixels that
     both images really show. It is then smoothed along the image's edges, by weighted least squares,
     and kept where that hardly changes it. A pair whose views share nothing has no disparity at all.
 

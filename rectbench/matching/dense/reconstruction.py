@@ -24,7 +24,17 @@ tells them from the sky."""
 
 @dataclass(frozen=True, eq=False)
 class Reconstruction:
-    """What a pair tells of the scene: a point for each pixel of the rectified left image."""
+    """What a pair tells of the scene: a point for each pixel of the rectified left image.
+
+    >>> import numpy as np
+    >>> import rectbench as rb
+    >>> camera = rb.Camera("pinhole", (160, 120), {"fx": 120, "fy": 120, "cx": 79.5, "cy": 59.5})
+    >>> rig = rb.Rig(camera, camera, np.eye(3), [-0.1, 0, 0])
+    >>> rect = rb.rectify(rig, "conventional")
+    >>> disparity = Disparity(rect, np.full((120, 160), 6.0, np.float32), np.zeros((120, 160, 3), np.uint8))
+    >>> rb.Reconstruction(disparity).points_at([79.5, 59.5])[2].round(3)  # 120 px · 0.1 m / 6 px
+    np.float64(2.0)
+    """
 
     disparity: Disparity
     farthest_baselines: float = FARTHEST_BASELINES
@@ -121,6 +131,16 @@ def reconstruct(
 
     Returns the `Reconstruction`; that of two images that share nothing has no points. Raises
     InvalidInput, UnknownName, InvalidResult or Unavailable, see `dense_disparity`.
+
+    >>> import cv2, numpy as np
+    >>> import rectbench as rb
+    >>> noise = np.random.default_rng(0).integers(0, 256, (120, 160), np.uint8)
+    >>> image = cv2.normalize(cv2.GaussianBlur(noise, (0, 0), 2), None, 0, 255, cv2.NORM_MINMAX)
+    >>> camera = rb.Camera("pinhole", (160, 120), {"fx": 120, "fy": 120, "cx": 79.5, "cy": 59.5})
+    >>> rect = rb.rectify(rb.Rig(camera, camera, np.eye(3), [-0.1, 0, 0]), "conventional")
+    >>> wall = rb.reconstruct(rect, image, np.roll(image, -6, axis=1))
+    >>> round(float(np.nanmedian(wall.points[..., 2])), 1)  # metres: 120 px · 0.1 m / 6 px
+    2.0
     """
     if not isinstance(rect, Rectification):
         raise InvalidInput(f"rect is {type(rect).__name__}; expected a Rectification, see rectbench.rectify")

@@ -1,1 +1,1 @@
-"""Features, and matches of them."""
+"""Detectors of features, and matches of them; no geometry. Imports images and types alone."""

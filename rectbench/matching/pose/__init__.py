@@ -1,1 +1,1 @@
-"""The relative pose that matches determine."""
+"""The two-view geometry that matches determine. Imports matching.features, rigs and what is below."""

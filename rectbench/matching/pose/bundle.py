@@ -13,8 +13,8 @@ from functools import cached_property
 import numpy as np
 
 from rectbench.cameras import Camera
-from rectbench.matching.pose.epipolar import Pose, RayMatches, meeting, tangents
-from rectbench.matching.pose.robust import TO_DEVIATION, bounded, regular
+from rectbench.matching.pose.epipolar import Pose, RayMatches, tangents, triangulated
+from rectbench.matching.pose.robust import TO_DEVIATION, mallows_weights, regular
 from rectbench.types import BoolArray, FloatArray
 
 STEPS = 15
@@ -44,12 +44,12 @@ class Adjusted:
 def adjusted(left: Camera, right: Camera, pose: Pose, matches: RayMatches) -> Adjusted:
     """Gauss-Newton on the reprojection errors of all matches in both images, in source pixels.
 
-    The loss is Cauchy's at one and a half times the noise, which is measured along, and no match has
-    much more say than the others. The covariance is that of an M-estimator (Huber 1981), which
-    presumes no normal distribution of the errors.
+    The loss is Cauchy's at one and a half times the noise, which is estimated along with the pose;
+    the influence of matches of high leverage is bounded. The covariance is that of an M-estimator
+    (Huber 1981), which presumes no normal distribution of the errors.
     """
     rays = matches.left
-    inverse = np.clip(meeting(pose, matches).inverse_distance, 0, 1 / NEAREST)
+    inverse = np.clip(triangulated(pose, matches).inverse_distance, 0, 1 / NEAREST)
     for _ in range(STEPS):
         equations = _equations(left, right, pose, matches, rays, inverse)
         step = equations.step()
@@ -86,7 +86,7 @@ class Equations:
 
     @cached_property
     def information(self) -> FloatArray:
-        """What each match knows about the pose [N, 5, 5], rank 1."""
+        """Fisher information of each match about the pose [N, 5, 5], rank 1, in units of 1/noise²."""
         return self.projected @ self.by_pose
 
     @cached_property
@@ -107,19 +107,19 @@ class Equations:
         return float(TO_DEVIATION * np.median(self.distances) * np.sqrt(freedom))
 
     @cached_property
-    def loss(self) -> FloatArray:
-        """Weight [N] of each match by its distance: Cauchy's."""
+    def residual_weights(self) -> FloatArray:
+        """Weight [N] of each match by its reprojection error: Cauchy's."""
         return 1 / (1 + (self.distances / max(SOFT * self.noise, 1e-9)) ** 2)
 
     @cached_property
-    def say(self) -> FloatArray:
-        """Weight [N] of each match by its place."""
+    def leverage_weights(self) -> FloatArray:
+        """Weight [N] of each match by its leverage: Mallows'."""
         spread = np.linalg.inv(_summed(self.information))
-        return bounded((self.information * spread).sum(axis=(1, 2)))
+        return mallows_weights((self.information * spread).sum(axis=(1, 2)))
 
     def step(self) -> FloatArray:
         """The pose's step [5] of iteratively reweighted least squares."""
-        weights = self.loss * self.say
+        weights = self.residual_weights * self.leverage_weights
         step = np.linalg.solve(_summed(self.information, weights), -weights @ self.gradients)
         return np.asarray(step, dtype=np.float64)
 
@@ -129,11 +129,11 @@ class Equations:
 
     def covariance(self) -> FloatArray:
         """H⁻¹ (Σ ψ² g gᵀ) H⁻¹ [5, 5], H with the mean slope of ψ (Huber, Robust Statistics, 1981)."""
-        pulls = (self.loss * self.say)[:, None] * self.gradients
-        slope = (2 * self.loss**2 - self.loss).mean()
-        spread = np.linalg.inv(slope * _summed(self.information, self.say))
-        freedom = len(pulls) / max(len(pulls) - 5, 1)
-        return freedom * spread @ (pulls.T @ pulls) @ spread
+        scores = (self.residual_weights * self.leverage_weights)[:, None] * self.gradients
+        slope = (2 * self.residual_weights**2 - self.residual_weights).mean()
+        spread = np.linalg.inv(slope * _summed(self.information, self.leverage_weights))
+        freedom = len(scores) / max(len(scores) - 5, 1)
+        return freedom * spread @ (scores.T @ scores) @ spread
 
 
 def _summed(information: FloatArray, weights: FloatArray | float = 1.0) -> FloatArray:

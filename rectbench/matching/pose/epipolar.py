@@ -136,7 +136,7 @@ def decomposed(matrix: FloatArray) -> tuple[Pose, Pose, Pose, Pose]:
     return Pose(first, t), Pose(first, -t), Pose(second, t), Pose(second, -t)
 
 
-class Meeting(NamedTuple):
+class Triangulation(NamedTuple):
     """Where the two rays of each match meet, all arrays [N]."""
 
     inverse_distance: FloatArray
@@ -149,7 +149,7 @@ class Meeting(NamedTuple):
     """Whether they point to the same half of space."""
 
 
-def meeting(pose: Pose, matches: RayMatches) -> Meeting:
+def triangulated(pose: Pose, matches: RayMatches) -> Triangulation:
     """Triangulation on the rays themselves, which point anywhere: no z decides what is ahead."""
     a, b = matches.left @ pose.R.T, matches.right
     # d_left a + t = d_right b, crossed with either ray.
@@ -159,13 +159,14 @@ def meeting(pose: Pose, matches: RayMatches) -> Meeting:
     along_right = (np.cross(a, pose.t) * across).sum(axis=-1)
     with np.errstate(divide="ignore", invalid="ignore"):
         inverse = np.where(along_left == 0, 0.0, square / along_left)
-    return Meeting(inverse, (along_left > 0) & (along_right > 0), np.sqrt(square), (a * b).sum(axis=-1) > 0)
+    ahead = (along_left > 0) & (along_right > 0)
+    return Triangulation(inverse, ahead, np.sqrt(square), (a * b).sum(axis=-1) > 0)
 
 
-def possible(pose: Pose, matches: RayMatches, limit_px: float) -> BoolArray:
-    """Whether each match [N] may be a point ahead of both cameras, one too far to tell included."""
-    meets = meeting(pose, matches)
-    mask: BoolArray = meets.ahead | (meets.alike & (meets.parallax <= limit_px * matches.rad_per_px))
+def in_front(pose: Pose, matches: RayMatches, limit_px: float) -> BoolArray:
+    """Cheirality: whether each match [N] may be a point ahead of both cameras, or too far to tell."""
+    place = triangulated(pose, matches)
+    mask: BoolArray = place.ahead | (place.alike & (place.parallax <= limit_px * matches.rad_per_px))
     return mask
 
 

@@ -25,16 +25,16 @@ from rectbench.matching.pose.epipolar import (
     RayMatches,
     decomposed,
     essential,
-    possible,
+    in_front,
     sampson_px,
     tangents,
 )
 from rectbench.matching.pose.evidence import (
-    accompanied,
+    depth_consistent,
     refuse_behind,
     refuse_chance,
+    refuse_pure_rotation,
     refuse_same_place,
-    refuse_turn,
 )
 from rectbench.matching.pose.robust import consensus, deviation, locally_optimised
 from rectbench.rigs import Rig
@@ -44,10 +44,10 @@ from rectbench.types import FloatArray, Images, Matches
 LEAST_MATCHES = 8
 THRESHOLD_PX = 3.0
 """Sampson distance of a wrong match, at the resolution where features are found."""
-WORKING_PIXELS = 600_000
+POSE_PIXELS = 600_000
 """On four times as many, features take three times as long, and the poses are hardly better."""
 MOST_FEATURES = 4000
-PER_CELL = 10
+POSE_PER_CELL = 10
 """Matches kept in one of some 170 cells: corners of the view count as much as its busiest part."""
 WITHIN_DEVIATIONS = 4.0
 """A match farther off than this many times the noise is an outlier."""
@@ -64,6 +64,17 @@ class PoseEstimate:
     """The pose of the right camera relative to the left one as the images show it: X_right = R X_left + t.
 
     The length of t cannot be seen; `rig` takes it from the calibration.
+
+    >>> import cv2, numpy as np
+    >>> import rectbench as rb
+    >>> noise = np.random.default_rng(0).integers(0, 256, (120, 160), np.uint8)
+    >>> left = cv2.normalize(cv2.GaussianBlur(noise, (0, 0), 2), None, 0, 255, cv2.NORM_MINMAX)
+    >>> right = np.concatenate([np.roll(left[:60], -6, axis=1), np.roll(left[60:], -12, axis=1)])
+    >>> camera = rb.Camera("pinhole", (160, 120), {"fx": 120, "fy": 120, "cx": 79.5, "cy": 59.5})
+    >>> rig = rb.Rig(camera, camera, np.eye(3), [-0.1, 0, 0])
+    >>> estimate = rb.estimate_pose((left, right), rig)
+    >>> estimate.motion, max(estimate.difference_deg(rig)) < 0.1
+    ('sideways', True)
     """
 
     R_right_left: FloatArray
@@ -83,7 +94,7 @@ class PoseEstimate:
     seconds: Mapping[str, float] = field(repr=False)
     """Wall time by stage: features, consensus, adjustment."""
     note: str = ""
-    """What a calibration says against this pose, see `contradiction`."""
+    """What contradicts this pose in a calibration, see `contradiction`."""
 
     @property
     def rotation_vector_deg(self) -> FloatArray:
@@ -109,7 +120,7 @@ class PoseEstimate:
         return float(np.degrees(turn.magnitude())), float(np.degrees(np.arctan2(sine, cosine)))
 
     def contradiction(self, rig: Rig) -> str:
-        """What speaks against the images being this rig's, in one line; empty where they agree."""
+        """What contradicts the images being this rig's, in one line; empty where they agree."""
         rotation_deg, direction_deg = self.difference_deg(rig)
         swapped_deg, _ = self.difference_deg(_swapped(rig))
         if direction_deg > 180 - CONTRADICTING_DEG and swapped_deg < CONTRADICTING_DEG:
@@ -124,7 +135,7 @@ class PoseEstimate:
     def rig_covariance(self, rig: Rig) -> RigCovariance:
         """How sure the pose of `self.rig(rig)` is; its lenses and its baseline's length count as exact.
 
-        Real lenses are not: add what their calibration says, see `RigCovariance.from_sigmas`.
+        Real lenses are not: add the uncertainty of their calibration, see `RigCovariance.from_sigmas`.
         """
         source = "pose estimated from the images, lenses and baseline's length taken as exact"
         return RigCovariance.of_direction(self.covariance, rig.baseline_m, source)
@@ -149,7 +160,7 @@ def pose_from_images(
     detector: str = "sift",
     ratio: float = RATIO,
     farthest: float | None = None,
-    working_pixels: float | None = WORKING_PIXELS,
+    working_pixels: float | None = POSE_PIXELS,
     seed: int = 0,
 ) -> PoseEstimate:
     """The pose from two photographs, see `match_features` and `relative_pose`.
@@ -174,7 +185,7 @@ def pose_from_images(
         farthest=farthest,
         working_pixels=working_pixels,
         most=MOST_FEATURES,
-        per_cell=PER_CELL,
+        per_cell=POSE_PER_CELL,
     )
     features_s = perf_counter() - start
     area = max(left.width * left.height, right.width * right.height)
@@ -203,8 +214,8 @@ def relative_pose(
     pose, limit_px = _narrowed(consensus(seen, threshold_px, seed), seen, threshold_px)
     refuse_chance(pose, seen, limit_px, seed)
     fitting = seen[np.abs(sampson_px(seen.terms(), essential(pose))[0]) <= limit_px]
-    pose = max(decomposed(essential(pose)), key=lambda one: int(possible(one, fitting, limit_px).sum()))
-    ahead = fitting[possible(pose, fitting, limit_px)]
+    pose = max(decomposed(essential(pose)), key=lambda one: int(in_front(one, fitting, limit_px).sum()))
+    ahead = fitting[in_front(pose, fitting, limit_px)]
     if len(ahead) < LEAST_MATCHES:
         refuse_behind(pose, fitting, limit_px)
         _refuse_few(len(ahead), given)
@@ -212,12 +223,12 @@ def relative_pose(
 
     start = perf_counter()
     result = adjusted(left, right, pose, ahead)
-    ahead = ahead[accompanied(result.pose, ahead, limit_px)]
+    ahead = ahead[depth_consistent(result.pose, ahead, limit_px)]
     result = adjusted(left, right, result.pose, ahead)
     limit_px = WITHIN_DEVIATIONS * max(result.noise_px, FINEST_PX)
-    inliers = ahead[(result.distances_px <= limit_px) & possible(result.pose, ahead, limit_px)]
+    inliers = ahead[(result.distances_px <= limit_px) & in_front(result.pose, ahead, limit_px)]
     _refuse_few(len(inliers), given)
-    refuse_turn(result.pose, fitting, limit_px)
+    refuse_pure_rotation(result.pose, fitting, limit_px)
     refuse_behind(result.pose, fitting, limit_px)
     across = block_diag(np.eye(3), tangents(result.pose.t))
     return PoseEstimate(

@@ -8,7 +8,14 @@ from scipy.special import gammaln
 from scipy.stats import binom
 
 from rectbench.errors import PoseNotFound
-from rectbench.matching.pose.epipolar import Pose, RayMatches, essential, meeting, possible, sampson_px
+from rectbench.matching.pose.epipolar import (
+    Pose,
+    RayMatches,
+    essential,
+    in_front,
+    sampson_px,
+    triangulated,
+)
 from rectbench.matching.pose.robust import SAMPLE
 from rectbench.types import BoolArray, FloatArray, Matches
 
@@ -28,7 +35,7 @@ STAYING = 0.9
 LEAST_STAYING = 8
 ORDERED = 0.5
 """Share of the square displacements that a flow explains; of noise it is next to nothing."""
-TURN_STEPS = 10
+ROTATION_STEPS = 10
 AHEAD_BY_CHANCE = 2 / 3
 """Share of points ahead, at most, where noise alone places them: the pose is fitted to that noise."""
 BELIEVED = 1e-3
@@ -89,16 +96,16 @@ def _alarms(matches: RayMatches, matrix: FloatArray, limit_px: float) -> tuple[f
     return float(log_alarms), agreeing, count
 
 
-def refuse_turn(pose: Pose, matches: RayMatches, limit_px: float) -> None:
+def refuse_pure_rotation(pose: Pose, matches: RayMatches, limit_px: float) -> None:
     """Raise PoseNotFound where a turn of the camera alone explains the matches [N] that fit the pose.
 
     A turn leaves each match off by its parallax. Where that rises above the noise for a minority only,
     these have to lie ahead of both cameras, as parallax does and noise does not.
     """
-    moved = _off_after_turn(pose.R, matches, limit_px) > np.sqrt(2) * limit_px
+    moved = _residuals_of_rotation(pose.R, matches, limit_px) > np.sqrt(2) * limit_px
     if 2 * moved.sum() > len(matches):
         return
-    ahead = int((meeting(pose, matches).ahead & moved).sum())
+    ahead = int((triangulated(pose, matches).ahead & moved).sum())
     if binom.sf(ahead - 1, moved.sum(), AHEAD_BY_CHANCE) > BELIEVED:
         raise PoseNotFound(
             f"a turn alone explains {(~moved).sum()} of {len(matches)} matches; "
@@ -108,7 +115,7 @@ def refuse_turn(pose: Pose, matches: RayMatches, limit_px: float) -> None:
 
 def refuse_behind(pose: Pose, matches: RayMatches, limit_px: float) -> None:
     """Raise PoseNotFound where many of the matches that fit the pose would lie behind a camera."""
-    behind = int((~possible(pose, matches, limit_px)).sum())
+    behind = int((~in_front(pose, matches, limit_px)).sum())
     if behind > MOST_BEHIND * len(matches):
         raise PoseNotFound(
             f"no pose stands out: of {len(matches)} matches that fit the best, {behind} would lie behind a "
@@ -116,12 +123,12 @@ def refuse_behind(pose: Pose, matches: RayMatches, limit_px: float) -> None:
         )
 
 
-def _off_after_turn(R: FloatArray, matches: RayMatches, limit_px: float) -> FloatArray:
+def _residuals_of_rotation(R: FloatArray, matches: RayMatches, limit_px: float) -> FloatArray:
     """Distances [N], px of the right image, that the turn which explains most matches leaves."""
     J = matches.per_pixel_right
     transposed = np.swapaxes(J, 1, 2)
     to_px = np.linalg.solve(transposed @ J, transposed)
-    for _ in range(TURN_STEPS):
+    for _ in range(ROTATION_STEPS):
         off = (to_px @ (matches.left @ R.T - matches.right)[..., None])[..., 0]
         off_px: FloatArray = np.linalg.norm(off, axis=-1)
         weights = 1 / (1 + (off_px / limit_px) ** 2)
@@ -148,15 +155,15 @@ def _log_choices(count: int, chosen: int) -> float:
     return float(gammaln(count + 1) - gammaln(chosen + 1) - gammaln(count - chosen + 1))
 
 
-def accompanied(pose: Pose, matches: RayMatches, limit_px: float) -> BoolArray:
+def depth_consistent(pose: Pose, matches: RayMatches, limit_px: float) -> BoolArray:
     """Whether one of the 8 nearest matches [N] in the left image lies at a similar distance.
 
-    Of surfaces most do. A wrong match that happens to lie on its epipolar line does not, and epipolar
-    geometry alone would never tell. All are kept where fewer than half have company.
+    Most points of a surface do. A wrong match that happens to lie on its epipolar line does not, and
+    epipolar geometry alone cannot tell. All are kept where fewer than half of them are consistent.
     """
     if len(matches) <= NEIGHBOURS:
         return np.ones(len(matches), bool)
-    inverse = meeting(pose, matches).inverse_distance
+    inverse = triangulated(pose, matches).inverse_distance
     near = np.asarray(cKDTree(matches.left).query(matches.left, NEIGHBOURS + 1)[1])
     tolerance = SIMILAR * np.abs(inverse) + limit_px * matches.rad_per_px
     differences = np.abs(inverse[near[:, 1:]] - inverse[:, None])

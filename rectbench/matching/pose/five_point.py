@@ -103,7 +103,7 @@ def _polished(coordinates: FloatArray, constraints: FloatArray) -> tuple[FloatAr
         jacobian = constraints @ np.swapaxes(slopes, 1, 2)
         residual = constraints @ (a * b * c)[..., None]
         transposed = np.swapaxes(jacobian, 1, 2)
-        # The constraints are homogeneous: J has no say along the solution itself, its square fills in.
+        # The constraints are homogeneous: J is singular along the solution itself, x xᵀ fills in.
         normal = transposed @ jacobian + coordinates[:, :, None] * coordinates[:, None, :]
         trace = np.trace(normal, axis1=1, axis2=2)
         normal += RIDGE * trace[:, None, None] * np.eye(4)

@@ -21,6 +21,14 @@ def fundamental_matrix(px_left: ArrayLike, px_right: ArrayLike) -> FloatArray:
     Hartley's normalised eight-point solution (In Defense of the Eight-Point Algorithm, 1997), then
     Levenberg-Marquardt on the Sampson error over the rank-2 matrices F = U diag(1, s, 0) Vᵀ.
     Raises InvalidInput for fewer than 8 matches or matches in one line.
+
+    >>> import numpy as np
+    >>> import rectbench as rb
+    >>> left = np.random.default_rng(0).uniform(0, 640, (20, 2))
+    >>> shifts = np.linspace(5, 40, 20) ** 1.5
+    >>> right = left - np.stack([shifts, np.zeros(20)], axis=1)  # along rows: already rectified
+    >>> np.abs(rb.fundamental_matrix(left, right)).round(3)
+    array([[0.   , 0.   , 0.   ], [0.   , 0.   , 0.707], [0.   , 0.707, 0.   ]])
     """
     left, right = as_points(px_left, 2, "px_left"), as_points(px_right, 2, "px_right")
     if left.shape != right.shape or left.ndim != 2 or len(left) < 8:
@@ -38,7 +46,15 @@ def fundamental_matrix(px_left: ArrayLike, px_right: ArrayLike) -> FloatArray:
 
 
 def sampson_residuals(F: FloatArray, left: FloatArray, right: FloatArray) -> FloatArray:
-    """Signed Sampson distances [N], in the unit of the homogeneous points [N, 3]."""
+    """Signed Sampson distances [N], in the unit of the homogeneous points [N, 3].
+
+    >>> import numpy as np
+    >>> import rectbench as rb
+    >>> F = np.array([[0, 0, 0], [0, 0, -1.0], [0, 1.0, 0]])  # of a rectified pair: rows correspond
+    >>> left, right = np.array([[9.0, 5.0, 1.0]]), np.array([[4.0, 5.2, 1.0]])
+    >>> np.abs(rb.sampson_residuals(F, left, right)).round(3)  # either pixel moves by half of 0.2
+    array([0.141])
+    """
     lines_right, lines_left = left @ F.T, right @ F
     algebraic = (right * lines_right).sum(axis=-1)
     gradient = np.sqrt((lines_right[:, :2] ** 2).sum(axis=-1) + (lines_left[:, :2] ** 2).sum(axis=-1))

@@ -16,7 +16,7 @@ from rectbench.matching.pose.epipolar import (
     decomposed,
     essential,
     essential_slopes,
-    possible,
+    in_front,
     sampson_px,
 )
 from rectbench.matching.pose.five_point import essential_matrices
@@ -31,8 +31,8 @@ MOST_SAMPLES = 6000
 CONFIDENCE = 0.9999
 FINEST = 0.05
 """Distances below this share of the limit cost next to nothing."""
-MOST_SAY = 3.0
-"""Times the mean leverage from which on a match loses weight."""
+LEVERAGE_BOUND = 3.0
+"""Multiple of the mean leverage above which a match is weighted down."""
 DAMPING = 1e-12
 """Share of a Hessian's trace that is added to its diagonal."""
 LOCALLY_OPTIMISED = 3
@@ -62,7 +62,7 @@ def consensus(matches: RayMatches, limit_px: float, seed: int) -> Pose:
             if _cost(distances, limit_px)[0] >= least:
                 continue
             poses = decomposed(essential(pose))
-            explained = np.where([possible(one, matches, limit_px) for one in poses], distances, limit_px)
+            explained = np.where([in_front(one, matches, limit_px) for one in poses], distances, limit_px)
             costs_ahead = _cost(explained, limit_px)
             if costs_ahead.min() < least:
                 best, least = poses[costs_ahead.argmin()], float(costs_ahead.min())
@@ -86,7 +86,7 @@ def locally_optimised(pose: Pose, terms: FloatArray, limit_px: float) -> Pose:
             break
         jacobian = (essential_slopes(pose).T @ terms[:, 0, near] / steepness[near]).T
         distances = distances[near]
-        weights = bounded(leverages(jacobian)) / ((softness * limit_px) ** 2 + distances * distances)
+        weights = mallows_weights(leverages(jacobian)) / ((softness * limit_px) ** 2 + distances * distances)
         weighted = jacobian.T * weights
         step = np.linalg.solve(regular(weighted @ jacobian), -weighted @ distances)
         pose = pose.moved(step)
@@ -94,20 +94,19 @@ def locally_optimised(pose: Pose, terms: FloatArray, limit_px: float) -> Pose:
 
 
 def leverages(jacobian: FloatArray) -> FloatArray:
-    """How much of a least-squares fit each equation [N, 5] decides by itself [N], 0 to 1."""
+    """Leverages [N], 0 to 1, of equations [N, 5] in a least-squares fit: the diagonal of the hat matrix."""
     spread = np.linalg.inv(regular(jacobian.T @ jacobian))
     leverage: FloatArray = ((jacobian @ spread) * jacobian).sum(axis=1)
     return leverage
 
 
-def bounded(leverage: FloatArray) -> FloatArray:
-    """Weights [N] that leave no match much more say than the others.
+def mallows_weights(leverage: FloatArray) -> FloatArray:
+    """Mallows' weights [N], which bound the influence of matches of high leverage.
 
-    A wrong match on the right epipolar line seems very near to the cameras, and would so decide the
-    fit: its distance stays small because the fit obeys it. (Mallows' weights; Hampel et al., Robust
-    Statistics, 1986.)
+    A wrong match on the right epipolar line seems very near to the cameras, and would so determine
+    the fit: a point of high leverage keeps its residual small. (Hampel et al., Robust Statistics, 1986.)
     """
-    share = MOST_SAY * leverage.mean() / np.maximum(leverage, np.finfo(float).tiny)
+    share = LEVERAGE_BOUND * leverage.mean() / np.maximum(leverage, np.finfo(float).tiny)
     weights: FloatArray = np.minimum(1, share) ** 2
     return weights
 

@@ -15,7 +15,7 @@ import numpy as np
 from rectbench.cameras import Camera
 from rectbench.errors import PoseNotFound
 from rectbench.matching.features.matches import match_features
-from rectbench.matching.pose.estimate import LEAST_MATCHES, THRESHOLD_PX, WORKING_PIXELS, relative_pose
+from rectbench.matching.pose.estimate import LEAST_MATCHES, POSE_PIXELS, THRESHOLD_PX, relative_pose
 from rectbench.rigs import Rig
 from rectbench.types import Images, Matches
 
@@ -40,10 +40,10 @@ def uncalibrated(images: Images, *, seed: int = 0) -> Uncalibrated:
     a part in. Raises PoseNotFound where the images tell none.
     """
     left, right = (_assumed(image.shape[1], image.shape[0]) for image in images)
-    found = match_features(*images, working_pixels=WORKING_PIXELS)
+    found = match_features(*images, working_pixels=POSE_PIXELS)
     if len(found.left) < LEAST_MATCHES:
         raise PoseNotFound(f"{len(found.left)} matches; expected at least {LEAST_MATCHES}")
-    reduction = max(1.0, math.sqrt(max(image.shape[0] * image.shape[1] for image in images) / WORKING_PIXELS))
+    reduction = max(1.0, math.sqrt(max(image.shape[0] * image.shape[1] for image in images) / POSE_PIXELS))
     _, kept = cv2.findFundamentalMat(
         found.left, found.right, cv2.USAC_MAGSAC, reduction, CONFIDENCE, MOST_SAMPLES
     )

@@ -9,8 +9,8 @@ from glob import glob, has_magic
 from pathlib import Path
 
 from rectbench.errors import InvalidInput
-from rectbench.pairs.finding.found_calibrations import home_of
-from rectbench.pairs.finding.pairing import FilePair, Pairing, paired_folders
+from rectbench.pairs.finding.calibrations import home_of
+from rectbench.pairs.finding.names import FilePair, Pairing, paired_folders
 from rectbench.pairs.finding.photographs import IMAGE_SUFFIXES
 
 

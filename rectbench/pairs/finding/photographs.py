@@ -11,8 +11,7 @@ from pathlib import Path
 import cv2
 
 from rectbench.errors import InvalidInput
-from rectbench.pairs.finding.data_manifest import MANIFEST, Manifest, read_manifest
-from rectbench.pairs.finding.found_calibrations import (
+from rectbench.pairs.finding.calibrations import (
     Calibration,
     found_calibrations,
     home_of,
@@ -21,7 +20,8 @@ from rectbench.pairs.finding.found_calibrations import (
     with_cameras_of,
     within_circle,
 )
-from rectbench.pairs.finding.pairing import FilePair, LeftOut, paired_files, words_in
+from rectbench.pairs.finding.manifest import MANIFEST, Manifest, read_manifest
+from rectbench.pairs.finding.names import FilePair, LeftOut, paired_files, words_in
 
 IMAGE_SUFFIXES = frozenset(
     {".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".pgm", ".ppm", ".pnm", ".webp", ".jp2", ".exr"}
@@ -84,7 +84,7 @@ def find_photographs(folder: str | Path) -> Photographs:
     found, no_calibrations = found_calibrations(root, files, pairs, [one.name for one in named])
 
     served = {one: list[FilePair]() for one in (*named, *found)}
-    lonely = list[LeftOut]()
+    unpaired = list[LeftOut]()
     for pair in pairs:
         near = _calibrations_of(pair, stated.get(pair), root, [*named, *found])
         own = [chosen for one in near if (chosen := with_cameras_of(one, pair))]
@@ -94,14 +94,14 @@ def find_photographs(folder: str | Path) -> Photographs:
             reason = "no calibration is beside or above it"
             if near:
                 reason = f"{near[0].files[0].name} has many cameras, and which took it is not told"
-            lonely += [LeftOut(pair.left, reason), LeftOut(pair.right, reason)]
+            unpaired += [LeftOut(pair.left, reason), LeftOut(pair.right, reason)]
     used = {file for one, its in served.items() if its for file in one.files}
-    lonely += [
+    unpaired += [
         LeftOut(one.files[0], "no pair of images is beside or below it")
         for one in (*named, *found)
         if used.isdisjoint(one.files)
     ]
-    left_out = [*no_images, *pairing.left_out, *no_calibrations, *lonely]
+    left_out = [*no_images, *pairing.left_out, *no_calibrations, *unpaired]
     left_out += [LeftOut(mask, "a mask, no photograph") for mask in masks]
     photographs = Photographs(
         root,

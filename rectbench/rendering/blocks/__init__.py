@@ -1,7 +1,13 @@
-"""Blocks to build scenes from: shapes, finishes, houses, trees, furniture; all metric, pure NumPy.
+"""Blocks to build scenes from, metric and pure NumPy. Imports rendering.world and what is below.
 
 A finish (`brick`, `timber` ...) covers a shape (`box`, `tubes` ...) and makes a `Model`; models move
 as one, add up, and become the meshes of a `World` through `meshes`.
+
+>>> from rectbench import blocks
+>>> post = blocks.box(0.1, 0.1, 1.0).of(blocks.concrete(seed=0))
+>>> fence = post.at(x=-1.0) + post.at(x=1.0)
+>>> [mesh.faces.shape for mesh in blocks.meshes([fence])]
+[(24, 3)]
 """
 
 from rectbench.rendering.blocks.furniture import (

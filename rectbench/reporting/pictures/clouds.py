@@ -38,15 +38,15 @@ def draw_clouds(sources: Sources, results: Sequence[Result], methods: Sequence[s
     ]
     # All are seen alike: from viewpoints made from the truth, else from what they show together.
     points: FloatArray | Floats
-    if known.truth is not None:
+    if known.knows_truth:
         points = known.truth.points_left[known.truth.visible_left]
     else:
         points = _together([patches for _, patches in clouds if not isinstance(patches, str)])
     views = two_views(points, SIZE)
-    heads = 0 if known.truth is None else 2
+    heads = 2 if known.knows_truth else 0
     figure, axes = panel_grid(2 * len(results) + heads, 2, SIZE[1] / SIZE[0])
     colours = looks(methods)
-    if known.truth is not None:
+    if known.knows_truth:
         _draw_row(axes[:2], _pictures(_true_patches(known.images, known.truth), views))
         _write_heads(axes[:2], "truth", "the left image at its depth")
     for i, (result, patches) in enumerate(clouds):

@@ -69,7 +69,7 @@ def draw_rectified(sources: Sources, results: Sequence[Result], methods: Sequenc
     Raises whatever the sources raise for the pair itself; a method that fails shows why in its place.
     """
     known = sources.pair(results[0])
-    pair, marks = known.images, _marks(known.matches, known.images)
+    pair, marks = known.images, _marks(known.shown_matches(), known.images)
     panels: list[tuple[str, Panel | str]] = [("", Panel("", pair.left, pair.right, marks))]
     panels += [
         (r.method, attempted(r, lambda r=r: _panel(sources, r, pair, marks)))  # type: ignore[misc]

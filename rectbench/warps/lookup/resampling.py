@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Literal, get_args
+from typing import Any, Literal, Protocol, get_args
 
 import cv2
 import numpy as np
@@ -14,13 +14,24 @@ from numpy.typing import NDArray
 from rectbench.errors import InvalidInput
 from rectbench.warps.lookup.footprints import Footprints, Patch
 from rectbench.warps.lookup.tables import FloatMap
+from rectbench.warps.warp import Warp
 
-if TYPE_CHECKING:
-    from rectbench.warps.rectification import Rectification, Side
-
+Side = Literal["left", "right"]
 Filter = Literal["point", "area"]
 REMAPPED_TYPES = tuple(map(np.dtype, ("uint8", "uint16", "int16", "float32", "float64")))
 """What `cv2.remap` resamples."""
+
+
+class Rectified(Protocol):
+    """What resampling needs of a `Rectification`."""
+
+    def warp(self, side: Side) -> Warp:
+        """The warp of one side."""
+        ...
+
+    def maps(self, side: Side) -> tuple[FloatMap, FloatMap]:
+        """(map_x, map_y) of one side, source pixels."""
+        ...
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,6 +44,13 @@ class Resampler:
     where the warp does not shrink. It comes closest to the scene with `cv2.INTER_CUBIC`: linear
     interpolation blurs for a second time what is averaged. Labels want points and
     `cv2.INTER_NEAREST`.
+
+    >>> import numpy as np
+    >>> import rectbench as rb
+    >>> rig = rb.load_rig("t265")
+    >>> resample = rb.Resampler.of(rb.rectify(rig, method="abraham"), "left", filter="area")
+    >>> resample(np.zeros((rig.left.height, rig.left.width, 3), np.uint8)).shape
+    (805, 804, 3)
     """
 
     side: Side
@@ -48,7 +66,7 @@ class Resampler:
     @classmethod
     def of(
         cls,
-        rect: Rectification,
+        rect: Rectified,
         side: Side,
         filter: Filter = "point",
         interpolation: int = cv2.INTER_LINEAR,

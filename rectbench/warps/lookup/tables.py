@@ -9,7 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rectbench import llvm
-from rectbench.formulas.arrays import drjit_namespace, namespaced, opaque
+from rectbench.formulas.evaluation import namespaced, opaque
+from rectbench.formulas.namespaces import NUMPY, drjit_namespace
+from rectbench.formulas.protocol import Formulas
 from rectbench.types import BoolArray, FloatArray
 from rectbench.warps.warp import Warp, rotated_back
 
@@ -37,7 +39,7 @@ def reads_source(map_x: FloatMap, map_y: FloatMap, size: tuple[int, int]) -> Boo
     return mask
 
 
-def _source_pixel(warp: Warp, c: Any, column: Any, row: Any, xp: Any) -> tuple[Any, Any]:
+def _source_pixel(warp: Warp, c: Any, column: Any, row: Any, xp: Formulas) -> tuple[Any, Any]:
     x, y, z, ok = warp.target.ray_formula(c.target, column, row, xp)
     u, v, seen = warp.source.project_formula(c.source, *rotated_back(c.R, x, y, z), xp)
     known = ok & seen
@@ -50,7 +52,7 @@ def _fill_with_numpy(
     c: SimpleNamespace = namespaced(warp.constants)
     along = tuple(values[None, :] for values in columns)
     with np.errstate(all="ignore"):
-        maps = _source_pixel(warp, c, along, tuple(values[:, None] for values in rows), np)
+        maps = _source_pixel(warp, c, along, tuple(values[:, None] for values in rows), NUMPY)
     shape = (rows[0].size, columns[0].size)
     return np.broadcast_to(maps[0], shape).astype(np.float32), np.broadcast_to(maps[1], shape).astype(
         np.float32

@@ -21,7 +21,13 @@ class Range(NamedTuple):
 
 
 class ViewAngles(NamedTuple):
-    """The angles of the pixels that exist: γ an image, β of both (rows are shared)."""
+    """The angles of the pixels that exist: γ an image, β of both (rows are shared).
+
+    >>> import rectbench as rb
+    >>> rig = rb.load_rig("t265")
+    >>> round(rb.view_angles(rig).gamma.high, 3)
+    1.401
+    """
 
     gamma_left: Range
     gamma_right: Range
@@ -34,7 +40,15 @@ class ViewAngles(NamedTuple):
 
 
 def view_angles(rig: Rig) -> ViewAngles:
-    """Ranges of γ and β over all pixels of both images, in the rig's rectified frame."""
+    """Ranges of γ and β over all pixels of both images, in the rig's rectified frame.
+
+    >>> import numpy as np
+    >>> import rectbench as rb
+    >>> np.degrees(rb.view_angles(rb.load_rig("t265"))).round()
+    array([[-81.,  80.],
+           [-80.,  80.],
+           [-81.,  81.]])
+    """
     gammas: list[Range] = []
     betas: list[Range] = []
     for camera, R_rect_cam in zip((rig.left, rig.right), rectifying_rotations(rig), strict=True):
@@ -58,12 +72,23 @@ def _range(values: FloatArray, margin: float, limit: float) -> Range:
 
 
 def perspective_size(rig: Rig) -> tuple[int, int]:
-    """(width, height) of a perspective rectification: that of the larger source image, each way."""
+    """(width, height) of a perspective rectification: that of the larger source image, each way.
+
+    >>> import rectbench as rb
+    >>> rb.perspective_size(rb.load_rig("t265"))
+    (848, 800)
+    """
     return max(rig.left.width, rig.right.width), max(rig.left.height, rig.right.height)
 
 
 def centre_rays(rig: Rig) -> FloatArray:
-    """Rays [2, 3] of the middle pixels of both images, in the rectified frame."""
+    """Rays [2, 3] of the middle pixels of both images, in the rectified frame.
+
+    >>> import rectbench as rb
+    >>> rb.centre_rays(rb.load_rig("t265")).round(2)
+    array([[ 0.  , -0.01,  1.  ],
+           [-0.02,  0.  ,  1.  ]])
+    """
     rotations = rectifying_rotations(rig)
     rays = [
         camera.unproject([(camera.width - 1) / 2, (camera.height - 1) / 2])[0] @ R_rect_cam.T

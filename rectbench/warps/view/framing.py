@@ -71,6 +71,10 @@ class Framing:
     pixels : a budget: an image of more pixels is made smaller.
 
     Raises InvalidInput for values that are none, or that contradict each other.
+
+    >>> import rectbench as rb
+    >>> rb.Framing(crop="valid", pixels=1e6).is_resized
+    True
     """
 
     crop: Literal["valid"] | tuple[float, float, float, float] | None = None
@@ -116,6 +120,11 @@ def framed(rect: Rectification, framing: Framing) -> Rectification:
     Scales are the same along rows and columns, so that no frame adds distortion to the method's. Raises
     InvalidInput for a frame that would be empty or of more than 200 megapixels, Unsupported where the
     method cannot show what is asked.
+
+    >>> import rectbench as rb
+    >>> rig = rb.load_rig("t265")
+    >>> rb.framed(rb.rectify(rig, method="abraham"), rb.Framing(fov_deg=(100, 80))).size
+    (499, 399)
     """
     if framing.is_own:
         return rect

@@ -18,6 +18,10 @@ def evaluation_pixels(camera: Camera, count: int = EVALUATION_PIXELS) -> FloatAr
 
     Cells of a grid with the image's aspect, their centres; those the lens does not see are left
     out, and the grid is made finer by their share, so that about `count` remain.
+
+    >>> import rectbench as rb
+    >>> rb.evaluation_pixels(rb.load_rig("t265").left).shape
+    (489, 2)
     """
     grid = _cell_centres(camera, count)
     seen = camera.unproject(grid)[1]
@@ -45,6 +49,11 @@ def outline_pixels(camera: Camera) -> tuple[FloatArray, float]:
     The rim of the image, half a pixel out, where the lens sees all of it; else a grid over the whole
     image too, since the image circle's edge then bounds the view. The spacing in pixels tells how far
     the bound may be off; it is 0 for the rim alone.
+
+    >>> import rectbench as rb
+    >>> pixels, spacing_px = rb.outline_pixels(rb.load_rig("bumblebee2").left)
+    >>> pixels.shape, spacing_px
+    ((1028, 2), 0.0)
     """
     right, bottom = camera.width - 0.5, camera.height - 0.5
     u, v = np.linspace(-0.5, right, RIM_POINTS), np.linspace(-0.5, bottom, RIM_POINTS)

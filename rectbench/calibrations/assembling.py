@@ -1,0 +1,95 @@
+"""A rig from what the files of its cameras say: which two of many, in which frame, in which unit."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from rectbench.calibrations.contract import UNITS, Given, PosedCamera
+from rectbench.calibrations.documents.faults import blaming, shown
+from rectbench.calibrations.documents.sources import Source
+from rectbench.calibrations.transforms import inverse
+from rectbench.cameras import Camera
+from rectbench.errors import InvalidInput
+from rectbench.rigs.rig import Rig
+from rectbench.types import FloatArray
+
+LONGEST_BASELINE_M = 10.0
+"""A longer baseline is rather one in millimetres; it is believed where the unit is stated."""
+
+MAX_NAMES = 20
+"""Of a file's cameras, as many are named in an error."""
+
+POSE_FILE = (
+    "a third file with the pose, `R_right_left: [[...], ...]` and `t_right_left: [x, y, z]`, or "
+    "OpenCV's R and T"
+)
+
+
+def assembled(
+    left: Camera,
+    right: Camera,
+    T_right_left: Any,
+    given: Given,
+    where: str,
+    name: str,
+    unit: str | None = None,
+) -> Rig:
+    """The rig of two cameras and the pose [4, 4] between them, in metres.
+
+    `unit` is what the file itself says its translations are in, None where it leaves that open.
+    Raises InvalidInput where caller and file disagree about the unit, where the pose is none, and
+    where a baseline beyond `LONGEST_BASELINE_M` suggests millimetres that nobody has stated.
+    """
+    if None not in (unit, given.unit) and unit != given.unit:
+        raise InvalidInput(f"{where}: is in {unit}; expected unit={given.unit!r} as given beside the file")
+    stated = unit or given.unit
+    T = np.asarray(T_right_left, dtype=np.float64)
+    with blaming(where):
+        rig = Rig(left, right, T[:3, :3], UNITS[stated or "m"] * T[:3, 3], name=name)
+    if stated is None and rig.baseline_m > LONGEST_BASELINE_M:
+        raise InvalidInput(
+            f"{where}: the baseline is {rig.baseline_m:.6g} m; expected at most {LONGEST_BASELINE_M:g} m, "
+            "or unit='mm' (or cm, in, ft, m) stating what the file's translations are in"
+        )
+    return rig
+
+
+def rig_of_posed(posed: Sequence[PosedCamera], given: Given, name: str, unit: str | None = None) -> Rig:
+    """The rig of two cameras, left and right, that stand in one frame."""
+    left, right = posed
+    where = f"{left.where} and {right.where}"
+    if left.T_shared_camera is None or right.T_shared_camera is None:
+        unposed = left if left.T_shared_camera is None else right
+        raise InvalidInput(f"{unposed.where}: does not say where its camera stands; expected {POSE_FILE}")
+    if np.array_equal(left.T_shared_camera[:3, 3], right.T_shared_camera[:3, 3]):
+        raise InvalidInput(f"{where}: put both cameras at one place; expected two places, or {POSE_FILE}")
+    with np.errstate(all="ignore"):  # what is not finite is said below
+        T = inverse(right.T_shared_camera) @ left.T_shared_camera
+    return assembled(left.camera, right.camera, T, given, where, name, unit)
+
+
+def chosen(names: Sequence[str], given: Given, file: str) -> tuple[str, str]:
+    """The left and the right of a file's cameras: those asked for, or else its first two."""
+    for name in given.cameras or ():
+        if name not in names:
+            known = ", ".join(shown(name) for name in names[:MAX_NAMES])
+            raise InvalidInput(f"{file}: has no camera {shown(name)}; expected two of {known}")
+    if len(names) < 2:
+        raise InvalidInput(f"{file}: holds {len(names)} cameras; expected two at least")
+    return given.cameras or (names[0], names[1])
+
+
+def single(sources: Sequence[Source]) -> Source:
+    """The one file of a format that takes no more than one."""
+    if len(sources) > 1:
+        raise InvalidInput(f"{sources[0].path}: is read together with {sources[1].path}; expected one file")
+    return sources[0]
+
+
+def placed(camera: PosedCamera, T_shared_camera: FloatArray) -> PosedCamera:
+    """The same camera, standing there."""
+    return replace(camera, T_shared_camera=T_shared_camera)

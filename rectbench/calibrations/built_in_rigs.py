@@ -1,0 +1,46 @@
+"""The rigs that ship with rectbench, in its own format."""
+
+from __future__ import annotations
+
+from importlib import resources
+from importlib.resources.abc import Traversable
+from pathlib import Path
+
+from rectbench.calibrations.formats.native import read_native
+from rectbench.errors import Unavailable, UnknownName
+from rectbench.rigs.rig import Rig
+
+
+def rig_names() -> tuple[str, ...]:
+    """The names of the rigs that ship with rectbench, sorted.
+
+    >>> import rectbench as rb
+    >>> "t265" in rb.rig_names()
+    True
+    """
+    return tuple(sorted(_files()))
+
+
+def built_in_rig(name: str) -> Rig:
+    """The rig of that name. Raises UnknownName, with the nearest names, where there is none."""
+    files = _files()
+    if name not in files:
+        raise UnknownName("rig", name, files)
+    return read_native(f"{name}.yaml", files[name].read_text(encoding="utf-8"))
+
+
+def may_be_rig_name(source: str) -> bool:
+    """Whether a string names a built-in rig; a path has a folder or a suffix, or exists as a file."""
+    if Path(source).name != source or Path(source).suffix:
+        return False
+    return source in _files() or not Path(source).exists()
+
+
+def _files() -> dict[str, Traversable]:
+    try:
+        folder = resources.files("rectbench_scenes") / "rigs"
+    except ModuleNotFoundError:
+        raise Unavailable(
+            "the built-in rigs are not installed; expected the package rectbench_scenes"
+        ) from None
+    return {Path(file.name).stem: file for file in folder.iterdir() if file.name.endswith(".yaml")}

@@ -1,0 +1,40 @@
+"""What is wrong with a file, in one line that prints."""
+
+from __future__ import annotations
+
+import reprlib
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import numpy as np
+
+from rectbench.errors import InvalidInput
+
+
+@contextmanager
+def blaming(where: str) -> Iterator[None]:
+    """Errors of what is built from a file's numbers, with file and key put before them.
+
+    Numbers so absurd that they overflow end in an error of their own, without a warning beside it.
+    """
+    try:
+        with np.errstate(all="ignore"):
+            yield
+    except (ValueError, ArithmeticError) as error:
+        raise InvalidInput(f"{where}: {one_line(error)}") from None
+
+
+def shown(value: Any) -> str:
+    """A value as an error shows it: one line, cut short."""
+    return one_line(_SHORT.repr(value))
+
+
+def one_line(message: Any) -> str:
+    """A message with its line breaks, and whatever else does not print, made spaces."""
+    return " ".join("".join(c if c.isprintable() else " " for c in str(message)).split())
+
+
+_SHORT = reprlib.Repr()
+_SHORT.maxstring = _SHORT.maxother = 40
+_SHORT.maxdict = 2

@@ -1,0 +1,116 @@
+"""The calibration of a Luxonis OAK camera, the JSON that depthai's `eepromToJsonFile` writes.
+
+`cameraData` is a list of [socket, camera]. A camera's `extrinsics` take its points to the camera of
+`toCameraSocket`, with a translation in centimetres; chains of them end at a camera with -1. Left and right
+are those of `stereoRectificationData`, or the sockets asked for, such as CAM_B and CAM_C. `distortionCoeff`
+is OpenCV's vector of 14, or of a fisheye its four; pixel (0, 0) is the centre of a pixel.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from rectbench.calibrations.assembling import chosen, rig_of_posed, single
+from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
+from rectbench.calibrations.documents.faults import blaming
+from rectbench.calibrations.documents.numbers import finite_number
+from rectbench.calibrations.documents.sections import Section
+from rectbench.calibrations.documents.sources import Source
+from rectbench.calibrations.formats.toolboxes.opencv import (
+    CAMERA_MODELS,
+    PINHOLE_COUNTS,
+    camera_matrix,
+    lens_parameters,
+)
+from rectbench.calibrations.transforms import rigid
+from rectbench.cameras import Camera
+from rectbench.errors import InvalidInput
+from rectbench.rigs.rig import Rig, checked_rotation
+from rectbench.types import FloatArray
+
+LENSES = {0: "pinhole", 1: "fisheye"}
+"""`cameraType`; 2 is a panorama, 3 a radial division."""
+
+STEREO = "stereoRectificationData"
+
+
+def _read(sources: Sequence[Source], given: Given) -> Rig:
+    source = single(sources)
+    cameras = _cameras(source.document)
+    names = chosen(_left_and_right_first(source.document, list(cameras)), given, source.path)
+    placed = [_to_last(cameras, name) for name in names]
+    if placed[0][0] != placed[1][0]:
+        first, second = (cameras[name].at("extrinsics") for name in names)
+        raise InvalidInput(f"{first} and {second} end at different cameras; expected one chain of both")
+    posed = [_read_posed(cameras[name], T, given) for name, (_, T) in zip(names, placed, strict=True)]
+    return rig_of_posed(posed, given, source.name, unit="cm")
+
+
+def _cameras(file: Section) -> dict[str, Section]:
+    """The cameras by the names of their sockets."""
+    cameras: dict[str, Section] = {}
+    entries = file.section_of_list("cameraData")
+    for place in entries.values:
+        entry = entries.section_of_list(place)
+        name = _socket(entry.number("0", "a socket's number"))
+        if name in cameras:
+            raise InvalidInput(f"{entry.at('0')} is {name} a second time; expected different sockets")
+        cameras[name] = entry.section("1", "a camera")
+    return cameras
+
+
+def _socket(number: float) -> str:
+    """CAM_A, the one that depthai once called RGB, is socket 0."""
+    known = 0 <= number < 26 and number.is_integer()
+    return f"CAM_{chr(ord('A') + int(number))}" if known else f"{number:g}"
+
+
+def _left_and_right_first(file: Section, names: list[str]) -> list[str]:
+    if STEREO not in file:
+        return names
+    stereo = file.section(STEREO, "the sockets of left and right")
+    pair = [finite_number(stereo.values.get(f"{side}CameraSocket")) for side in ("left", "right")]
+    sockets = [_socket(number) for number in pair if number is not None]
+    return sorted(names, key=lambda name: sockets.index(name) if name in sockets else len(sockets))
+
+
+def _to_last(cameras: dict[str, Section], name: str) -> tuple[str, FloatArray]:
+    """The camera at which a camera's chain ends, and the pose from it to that."""
+    T = np.eye(4)
+    for _ in cameras:
+        extrinsics = cameras[name].section("extrinsics", "the pose to another camera")
+        next_name = _socket(extrinsics.number("toCameraSocket", "a socket, or -1"))
+        if next_name not in cameras:
+            return name, T
+        R = extrinsics.matrix("rotationMatrix", "a 3x3 rotation", 3, 3)
+        shift = extrinsics.section("translation", "x, y and z, centimetres")
+        t = [shift.number(axis, "centimetres") for axis in "xyz"]
+        with blaming(extrinsics.at("rotationMatrix")):
+            T = rigid(checked_rotation(R, "it"), t) @ T
+        name = next_name
+    raise InvalidInput(f"{cameras[name].at('extrinsics')} leads back to its own camera; expected an end, -1")
+
+
+def _read_posed(section: Section, T: FloatArray, given: Given) -> PosedCamera:
+    kind = section.number("cameraType", "0 or 1") if "cameraType" in section else 0
+    if kind not in LENSES:
+        raise section.fault("cameraType", "0 (perspective) or 1 (fisheye)")
+    lens = LENSES[int(kind)]
+    params = camera_matrix(section, "intrinsicMatrix", lens)
+    counts = (4,) if lens == "fisheye" else PINHOLE_COUNTS
+    params |= lens_parameters(section, "distortionCoeff", lens, counts)
+    size = section.sides("width", "height", given.size)
+    where = section.at("").removesuffix(".")
+    with blaming(where):
+        return PosedCamera(where, Camera(CAMERA_MODELS[lens], size, params), T)
+
+
+FORMAT = RigFormat(
+    "depthai",
+    "Luxonis OAK (depthai) calibration (JSON)",
+    lambda source: "cameraData" in source.keys,
+    _read,
+    has_many=True,
+)

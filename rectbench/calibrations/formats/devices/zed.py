@@ -1,0 +1,100 @@
+"""Stereolabs' factory calibration of a ZED, `SN<serial>.conf`: a section a camera and resolution.
+
+`[LEFT_CAM_HD]` has fx fy cx cy and OpenCV's k1 k2 p1 p2 k3; `[STEREO]` has `Baseline`, `TY_HD`, `TZ_HD` in
+millimetres and the rotation vector `RX_HD CV_HD RZ_HD`. As Stereolabs' own zed_opencv_native.py reads it,
+X_right = R X_left + (-Baseline, TY, TZ). The file holds several resolutions; the size given beside it
+chooses, and is needed unless there is one alone. Pixel (0, 0) is the centre of a pixel.
+"""
+
+from __future__ import annotations
+
+import configparser
+from collections.abc import Sequence
+
+import cv2
+import numpy as np
+
+from rectbench.calibrations.assembling import assembled, single
+from rectbench.calibrations.contract import Given, RigFormat
+from rectbench.calibrations.documents.faults import blaming, one_line
+from rectbench.calibrations.documents.sections import Section
+from rectbench.calibrations.documents.sources import Source
+from rectbench.calibrations.transforms import rigid
+from rectbench.cameras import Camera
+from rectbench.errors import InvalidInput
+from rectbench.rigs.rig import Rig
+
+SIZES = {
+    "VGA": (672, 376),
+    "SVGA": (960, 600),
+    "HD": (1280, 720),
+    "FHD": (1920, 1080),
+    "FHD1200": (1920, 1200),
+    "2K": (2208, 1242),
+    "QHDPLUS": (3200, 1800),
+    "4K": (3840, 2160),
+}
+"""Width and height, in pixels, of an image of one camera at each resolution."""
+
+FOCAL = ("fx", "fy", "cx", "cy")
+DISTORTION = ("k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6")
+MAX_CHARACTERS = 1 << 16
+SIDES = ("LEFT", "RIGHT")
+
+
+def _read(sources: Sequence[Source], given: Given) -> Rig:
+    source = single(sources)
+    file = _parsed(source)
+    resolution = _resolution(file, given)
+    left, right = (_read_camera(file, f"{side}_CAM_{resolution}", SIZES[resolution]) for side in SIDES)
+    stereo = file.section("STEREO", "Baseline and the rotation")
+    shift = [-stereo.number("baseline", "millimetres")]
+    shift += [_number(stereo, axis, resolution) for axis in ("ty", "tz")]
+    turn = np.array([_number(stereo, axis, resolution) for axis in ("rx", "cv", "rz")])
+    T = rigid(cv2.Rodrigues(turn)[0], shift)
+    return assembled(left, right, T, given, stereo.at("baseline"), source.name, unit="mm")
+
+
+def _parsed(source: Source) -> Section:
+    """Sections by name, each with its keys in lower case."""
+    if len(source.text) > MAX_CHARACTERS:
+        raise InvalidInput(
+            f"{source.path}: is larger than {MAX_CHARACTERS >> 10} KiB; expected a ZED's .conf"
+        )
+    parser = configparser.ConfigParser(interpolation=None, delimiters=("=",))
+    try:
+        parser.read_string(source.text)
+    except configparser.Error as error:
+        raise InvalidInput(f"{source.path}: {one_line(error)[:200]}; expected a ZED's .conf") from None
+    return Section(source.path, "", {name: dict(parser[name]) for name in parser.sections()})
+
+
+def _resolution(file: Section, given: Given) -> str:
+    known = [name for name in SIZES if all(f"{side}_CAM_{name}" in file for side in SIDES)]
+    fitting = [name for name in known if given.size in (None, SIZES[name])]
+    if len(fitting) != 1:
+        sizes = " or ".join("{}x{}".format(*SIZES[name]) for name in known)
+        found = f"holds no cameras of {given.size}" if given.size else f"holds {len(known)} resolutions"
+        raise InvalidInput(f"{file.file}: {found}; expected `size=` {sizes or 'of one'} beside the file")
+    return fitting[0]
+
+
+def _read_camera(file: Section, name: str, size: tuple[int, int]) -> Camera:
+    section = file.section(name, "a camera")
+    names = [*FOCAL, *(name for name in DISTORTION if name in section)]
+    with blaming(section.at("").removesuffix(".")):
+        return Camera("pinhole", size, {name: section.number(name, "a number") for name in names})
+
+
+def _number(stereo: Section, key: str, resolution: str) -> float:
+    """The key's value at this resolution, or at all; what is left out is 0."""
+    keys = [name for name in (f"{key}_{resolution.lower()}", key) if name in stereo]
+    return stereo.number(keys[0], "a number") if keys else 0.0
+
+
+FORMAT = RigFormat(
+    "zed",
+    "Stereolabs ZED factory calibration (.conf)",
+    lambda source: "[LEFT_CAM_" in source.head,
+    _read,
+)

@@ -1,0 +1,59 @@
+"""OKVIS' and OKVIS2's configuration: a list `cameras`, each with its lens and `T_SC`.
+
+`T_SC` takes points of the camera to the sensor that is the IMU, in metres. The distortions are OKVIS'
+radialtangential (k1 k2 p1 p2), radialtangential8 (OpenCV's eight) and equidistant; pixel (0, 0) is the
+centre of a pixel. Left and right are the first two, or those asked for: cam0, cam1, ... by their places.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from rectbench.calibrations.assembling import chosen, rig_of_posed, single
+from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
+from rectbench.calibrations.documents.faults import blaming
+from rectbench.calibrations.documents.sections import Section
+from rectbench.calibrations.documents.sources import Source
+from rectbench.calibrations.formats.toolboxes.opencv import ORDERS
+from rectbench.cameras import Camera
+from rectbench.rigs.rig import Rig
+
+MODELS = {
+    "radialtangential": ("pinhole", ORDERS["pinhole"][:4]),
+    "radialtangential8": ("pinhole", ORDERS["pinhole"][:8]),
+    "equidistant": ("kannala-brandt", ORDERS["fisheye"]),
+}
+
+
+def _read(sources: Sequence[Source], given: Given) -> Rig:
+    source = single(sources)
+    cameras = source.document.section_of_list("cameras")
+    names = chosen([f"cam{place}" for place in cameras.values], given, source.path)
+    posed = [_read_posed(cameras.section(name.removeprefix("cam"), "a camera"), given) for name in names]
+    return rig_of_posed(posed, given, source.name)
+
+
+def _read_posed(section: Section, given: Given) -> PosedCamera:
+    kind = section.text("distortion_type", ", ".join(MODELS))
+    if kind not in MODELS:
+        raise section.fault("distortion_type", ", ".join(MODELS))
+    model, order = MODELS[kind]
+    focal = section.numbers("focal_length", "[fx, fy]", 2)
+    centre = section.numbers("principal_point", "[cx, cy]", 2)
+    distortion = section.numbers(
+        "distortion_coefficients", f"{len(order)} finite numbers ({' '.join(order)})", len(order)
+    )
+    names = ("fx", "fy", "cx", "cy", *order)
+    size = section.size("image_dimension", given.size)
+    where = section.at("").removesuffix(".")
+    with blaming(where):
+        camera = Camera(model, size, dict(zip(names, [*focal, *centre, *distortion], strict=True)))
+    return PosedCamera(where, camera, section.rigid("T_SC", "the pose from camera to IMU, metres"))
+
+
+def _recognises(source: Source) -> bool:
+    cameras = source.document.values["cameras"] if "cameras" in source.keys else None
+    return isinstance(cameras, list) and any(isinstance(item, dict) and "T_SC" in item for item in cameras)
+
+
+FORMAT = RigFormat("okvis", "OKVIS and OKVIS2 configuration (YAML)", _recognises, _read, has_many=True)

@@ -1,0 +1,108 @@
+"""ORB-SLAM3's settings of a stereo rig, and ORB-SLAM2's with its rectification (OpenCV YAML).
+
+ORB-SLAM3: `Camera1.*`, `Camera2.*` (older files: `Camera.*`), `Camera.type` PinHole or KannalaBrandt8,
+and `Stereo.T_c1_c2` (older: `Tlr`), which takes points of the right camera to the left one, metres.
+Rectified images have Camera1 alone, and the baseline `Stereo.b`; in ORB-SLAM2's settings, Camera and
+`Camera.bf`, the baseline times fx. A `DepthMapFactor` marks the settings of an RGB-D camera, of no rig.
+ORB-SLAM2: `LEFT.K`, `LEFT.D`, `LEFT.R`, `LEFT.P` and `RIGHT.*`, as `cv2.stereoRectify` gives them; P[0, 3] of
+RIGHT is -fx' B, see `calibrations.devices.ros`. Four coefficients in LEFT.D are still the pinhole's.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from rectbench.calibrations.assembling import assembled, rig_of_posed, single
+from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
+from rectbench.calibrations.documents.faults import blaming
+from rectbench.calibrations.documents.sections import Section
+from rectbench.calibrations.documents.sources import Source
+from rectbench.calibrations.formats.devices.ros import rectified_place
+from rectbench.calibrations.formats.toolboxes.opencv import PINHOLE_COUNTS, camera_matrix, lens_parameters
+from rectbench.calibrations.transforms import inverse, rigid
+from rectbench.cameras import Camera
+from rectbench.errors import InvalidInput
+from rectbench.rigs.rig import Rig
+
+POSES = ("Stereo.T_c1_c2", "Tlr")
+MODELS = {
+    "PinHole": ("pinhole", ("k1", "k2", "p1", "p2")),
+    "KannalaBrandt8": ("kannala-brandt", ("k1", "k2", "k3", "k4")),
+    "Rectified": ("pinhole", ()),
+}
+OPTIONAL = ("k3",)
+"""What PinHole may have beyond its four coefficients."""
+
+
+def _read(sources: Sequence[Source], given: Given) -> Rig:
+    file = single(sources).document
+    if any(key in file for key in POSES):
+        return _read_calibrated(file, given, sources[0].name)
+    if "Stereo.b" in file:
+        left = _read_camera(file, "Camera1", given)
+        T = rigid(np.eye(3), [-file.number("Stereo.b", "metres"), 0.0, 0.0])
+        return assembled(left, left, T, given, file.at("Stereo.b"), sources[0].name)
+    if "LEFT.K" not in file and "RIGHT.K" not in file:
+        return _read_side_by_side(file, given, sources[0].name)
+    posed = [_read_rectified(file, side, given) for side in ("LEFT", "RIGHT")]
+    return rig_of_posed(posed, given, sources[0].name)
+
+
+def _read_side_by_side(file: Section, given: Given, name: str) -> Rig:
+    """The rectified pair of `Camera.bf`; a distortion there would be one that nobody undoes."""
+    params = {key: file.number(f"Camera.{key}", "pixels") for key in ("fx", "fy", "cx", "cy")}
+    distortion = [f"Camera.{key}" for key in ("k1", "k2", "p1", "p2", "k3") if f"Camera.{key}" in file]
+    for key in distortion:
+        if file.number(key, "0") != 0:
+            raise file.fault(key, "0 of rectified images, or LEFT.K, LEFT.D and the like of others")
+    if params["fx"] <= 0:
+        raise file.fault("Camera.fx", "pixels above 0")
+    size = file.sides("Camera.width", "Camera.height", given.size)
+    with blaming(file.at("Camera.fx")):
+        camera = Camera("pinhole", size, params)
+    baseline = file.number("Camera.bf", "pixels times metres") / params["fx"]
+    T = rigid(np.eye(3), [-baseline, 0.0, 0.0])
+    return assembled(camera, camera, T, given, file.at("Camera.bf"), name)
+
+
+def _read_calibrated(file: Section, given: Given, name: str) -> Rig:
+    key = next(key for key in POSES if key in file)
+    left = _read_camera(file, "Camera1" if "Camera1.fx" in file else "Camera", given)
+    right = _read_camera(file, "Camera2", given)
+    T_left_right = file.rigid(key, "the pose from the right camera to the left, metres")
+    return assembled(left, right, inverse(T_left_right), given, file.at(key), name)
+
+
+def _read_camera(file: Section, camera: str, given: Given) -> Camera:
+    kind = file.text("Camera.type", " or ".join(MODELS))
+    if kind not in MODELS:
+        raise file.fault("Camera.type", " or ".join(MODELS))
+    model, distortion = MODELS[kind]
+    names = ["fx", "fy", "cx", "cy", *distortion]
+    names += [name for name in OPTIONAL if model == "pinhole" and f"{camera}.{name}" in file]
+    params = {name: file.number(f"{camera}.{name}", "a number") for name in names}
+    size = file.sides("Camera.width", "Camera.height", given.size)
+    with blaming(file.at(f"{camera}.fx")):
+        return Camera(model, size, params)
+
+
+def _read_rectified(file: Section, side: str, given: Given) -> PosedCamera:
+    params = camera_matrix(file, f"{side}.K", "pinhole")
+    params |= lens_parameters(file, f"{side}.D", "pinhole", PINHOLE_COUNTS)
+    size = file.sides(f"{side}.width", f"{side}.height", given.size)
+    T = rectified_place(file, f"{side}.R", f"{side}.P")
+    if T is None:
+        raise InvalidInput(f"{file.at(side)}.R or {side}.P is missing; expected cv2.stereoRectify's R and P")
+    with blaming(file.at(f"{side}.K")):
+        return PosedCamera(file.at(f"{side}.R"), Camera("pinhole", size, params), T)
+
+
+def _recognises(source: Source) -> bool:
+    keys = source.keys
+    is_stereo = "Camera.bf" in keys and "DepthMapFactor" not in keys
+    return is_stereo or bool({"LEFT.K", "RIGHT.K", "Camera1.fx", "Camera2.fx", *POSES} & keys)
+
+
+FORMAT = RigFormat("orbslam", "ORB-SLAM2 and ORB-SLAM3 stereo settings (YAML)", _recognises, _read)

@@ -1,0 +1,1 @@
+"""Formats of structure from motion, a file each. Imports other formats and what they may."""

@@ -1,0 +1,63 @@
+"""BoofCV's `StereoParameters` (YAML): `left`, `right` and `rightToLeft`.
+
+`rightToLeft` takes points of the right camera to the left one: a row-major `rotation` and `x y z` in
+the unit of the calibration target, which the file does not tell (often millimetres). The lens is the
+pinhole with radial (up to three) and tangential coefficients, t1 and t2 being OpenCV's p1 and p2.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from rectbench.calibrations.assembling import assembled, single
+from rectbench.calibrations.contract import Given, RigFormat
+from rectbench.calibrations.documents.faults import blaming
+from rectbench.calibrations.documents.sections import Section
+from rectbench.calibrations.documents.sources import Source
+from rectbench.calibrations.transforms import inverse, rigid
+from rectbench.cameras import Camera
+from rectbench.errors import InvalidInput
+from rectbench.rigs.rig import Rig, checked_rotation
+
+RADIAL = ("k1", "k2", "k3")
+
+
+def _read(sources: Sequence[Source], given: Given) -> Rig:
+    file = single(sources).document
+    left, right = (_read_camera(file.section(side, "a camera"), given) for side in ("left", "right"))
+    pose = file.section("rightToLeft", "the pose of the right camera")
+    R = pose.array("rotation", "a 3x3 rotation", (9,)).reshape(3, 3)
+    t = [pose.number(axis, "the unit of the calibration target") for axis in "xyz"]
+    with blaming(pose.at("rotation")):
+        T_left_right = rigid(checked_rotation(R, "it"), t)
+    return assembled(left, right, inverse(T_left_right), given, pose.at("x"), sources[0].name)
+
+
+def _read_camera(section: Section, given: Given) -> Camera:
+    kind = section.text("model", "pinhole or pinhole_radial_tangential")
+    if kind not in ("pinhole", "pinhole_radial_tangential"):
+        raise section.fault("model", "pinhole or pinhole_radial_tangential")
+    pinhole = section.section("pinhole", "fx fy cx cy width height")
+    if "skew" in pinhole and pinhole.number("skew", "0") != 0:
+        raise InvalidInput(f"{pinhole.at('skew')} is {pinhole.values['skew']}; expected 0")
+    params = {name: pinhole.number(name, "pixels") for name in ("fx", "fy", "cx", "cy")}
+    if kind == "pinhole_radial_tangential":
+        params |= _read_distortion(section.section("radial_tangential", "radial, t1 and t2"))
+    size = pinhole.sides("width", "height", given.size)
+    with blaming(section.at("pinhole")):
+        return Camera("pinhole", size, params)
+
+
+def _read_distortion(section: Section) -> dict[str, float]:
+    radial = section.numbers("radial", "up to three coefficients") if "radial" in section else []
+    if len(radial) > len(RADIAL):
+        raise section.fault("radial", "up to three coefficients")
+    tangential = {
+        ours: section.number(t, "a number") for t, ours in (("t1", "p1"), ("t2", "p2")) if t in section
+    }
+    return dict(zip(RADIAL, radial, strict=False)) | tangential
+
+
+FORMAT = RigFormat(
+    "boofcv", "BoofCV stereo parameters (YAML)", lambda source: "rightToLeft" in source.keys, _read
+)

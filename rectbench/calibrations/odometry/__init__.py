@@ -1,1 +1,0 @@
-"""Formats of visual odometry and of its calibrators."""

@@ -1,1 +1,0 @@
-"""Formats of structure from motion."""

@@ -1,0 +1,115 @@
+"""A rendered pair: made once, kept in the store, its truth known."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+
+from rectbench.calibrations import load_rig
+from rectbench.errors import Unavailable
+from rectbench.images.stereo_pair import StereoPair
+from rectbench.pairs.features import scored_features
+from rectbench.pairs.pair import Pair
+from rectbench.pairs.rendering import IMAGES, TRUTH, TRUTH_FILE, Studio, placed, truth_inputs
+from rectbench.pairs.spec import ESTIMATED, RenderedSpec
+from rectbench.rendering.truth import Truth
+from rectbench.rigs import Rig
+from rectbench.store.keys import Inputs
+from rectbench.types import Matches
+
+SHOWN_MATCHES = 2000
+"""True correspondences that pictures choose from."""
+
+
+@dataclass(frozen=True, eq=False)
+class RenderedPair(Pair):
+    """A rig placed in a scene; `studio` renders what the store lacks."""
+
+    spec: RenderedSpec
+    studio: Studio = field(default_factory=Studio)
+
+    @cached_property
+    def rig(self) -> Rig:
+        spec = self.spec
+        return placed(load_rig(spec.rig_source), spec.scene, spec.motion, spec.seed, spec.image_width)
+
+    @cached_property
+    def inputs(self) -> Inputs:
+        return truth_inputs(self.spec)
+
+    @property
+    def image_inputs(self) -> Inputs:
+        return {**self.inputs, "quality": self.spec.quality, "spp": self.spec.spp}
+
+    @property
+    def is_made(self) -> bool:
+        wants_truth, wants_images = self.spec.truth, self.spec.images
+        return (not wants_truth or self.store.has(TRUTH, self.inputs)) and (
+            not wants_images or self.store.has(IMAGES, self.image_inputs)
+        )
+
+    def make(self) -> None:
+        """Render what is asked of the pair and the store lacks; one process at a time makes one pair."""
+        self._make(truth=self.spec.truth, images=self.spec.images)
+
+    @cached_property
+    def images(self) -> StereoPair:
+        return StereoPair.load(self._folder(IMAGES, self.image_inputs))
+
+    @property
+    def knows_truth(self) -> bool:
+        return True
+
+    @cached_property
+    def truth(self) -> Truth:
+        return Truth.load(self._folder(TRUTH, self.inputs) / TRUTH_FILE)
+
+    def shown_matches(self) -> Matches:
+        return Matches(*self.truth.matches(SHOWN_MATCHES, seed=0))
+
+    def features(self, *, by_estimate: bool) -> Matches:
+        return self._features_by_estimate if by_estimate else self._features_by_truth
+
+    @cached_property
+    def _features_by_truth(self) -> Matches:
+        return scored_features(self.images, self.rig)
+
+    @cached_property
+    def _features_by_estimate(self) -> Matches:
+        return scored_features(self.images, self.estimate.rig(self.rig))
+
+    def given_matches(self, pose: str, count: int, noise_px: float) -> Matches:
+        """Those of the estimate where the pose is estimated, else true ones with noise."""
+        if pose == ESTIMATED:
+            return self.estimate.inliers
+        return Matches(*self.truth.matches(count, seed=self.seed_of("matches"), noise_px=noise_px))
+
+    def require(self) -> None:
+        """Nothing: what the store lacks is rendered."""
+
+    def forget(self) -> None:
+        self.store.drop(self.store.place(TRUTH, self.inputs))
+        self.store.drop(self.store.place(IMAGES, self.image_inputs))
+
+    def _folder(self, kind: str, inputs: Inputs) -> Path:
+        folder = self.store.read(kind, inputs)
+        if folder is None:
+            self._make(truth=kind == TRUTH, images=kind == IMAGES)
+            folder = self.store.read(kind, inputs)
+        if folder is None:
+            raise Unavailable(f"the store at {self.store.root} does not keep what is written to it")
+        return folder
+
+    def _make(self, *, truth: bool, images: bool) -> None:
+        with self.store.making(TRUTH, self.inputs):
+            lacks_truth = truth and self.store.read(TRUTH, self.inputs) is None
+            lacks_images = images and self.store.read(IMAGES, self.image_inputs) is None
+            if lacks_truth or lacks_images:
+                self.studio.render(
+                    self.spec,
+                    self.rig,
+                    self.store,
+                    truth=self.inputs if lacks_truth else None,
+                    images=self.image_inputs if lacks_images else None,
+                )
