@@ -54,7 +54,7 @@ def gate(request: GateRequest) -> int:
 
     Exit code 0 where it is as good, 1 where it got worse, 3 where it is incomplete or measured nothing.
     """
-    from rectbench.cli.printing.verdict import show_verdict
+    from rectbench.cli.printing.gating import show_gating
     from rectbench.runs import gating
 
     path = request.accepted or gating.accepted_path(request.folder)
@@ -62,7 +62,7 @@ def gate(request: GateRequest) -> int:
         print(f"{gating.accept(request.folder, path)} cells accepted in {path}")
         return GOOD
     verdict = gating.gate(request.folder, path)
-    show_verdict(verdict)
+    show_gating(verdict)
     return verdict.exit_code
 
 

@@ -8,7 +8,7 @@ from rectbench.cli.printing.screen import console
 from rectbench.runs.gating import Verdict
 
 
-def show_verdict(verdict: Verdict) -> None:
+def show_gating(verdict: Verdict) -> None:
     """What a gate found, worst first."""
     screen = console()
     for title, lines, style in (
