@@ -5,8 +5,8 @@ from .api import rectify as rectify
 from .api import rectify_images as rectify_images
 from .api import render as render
 from .api import run as run
-from .applications.choosing import Choice as Choice
-from .applications.choosing import best_method as best_method
+from .applications.choose_method import Choice as Choice
+from .applications.choose_method import best_method as best_method
 from .calibrations import load_covariance as load_covariance
 from .calibrations import load_rig as load_rig
 from .calibrations import rig_names as rig_names

@@ -1,42 +1,39 @@
-"""The verbs of `import rectbench as rb`: estimate a pose, rectify a rig, render or export, run a report."""
+"""The verbs of `import rectbench as rb`: estimate a pose, rectify a rig, render or export, run a report.
+
+Their arguments are the fields of requests, which the command line fills too and which check them, see
+`applications.requests`. Imports all but cli.
+"""
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from rectbench.calibrations import holds_many, load_rig, load_rig_of_images
+from rectbench.applications.array_checks import checked_rig
+from rectbench.applications.estimate_pose import estimate_rig_pose
+from rectbench.applications.rectify_rig import rectify_rig
+from rectbench.applications.requests.photographs import PoseSettings, RectifyRequest
+from rectbench.applications.requests.rendering import ExportRequest, RenderRequest
+from rectbench.applications.requests.running import RunRequest
+from rectbench.applications.requests.shared import SeededMethodRequest
 from rectbench.calibrations.reading import RigSource
-from rectbench.errors import InvalidInput
 from rectbench.matching.features.matches import RATIO
-from rectbench.matching.pose.estimate import POSE_PIXELS, PoseEstimate, pose_from_images
-from rectbench.pairs.rendering import placed, render_seed
-from rectbench.plugins.defaults import DEFAULT_METHOD, UNCALIBRATED_METHOD
-from rectbench.plugins.fitting import checked_options, fit
-from rectbench.plugins.rectifier import METHODS, pose_problem
-from rectbench.plugins.scene import SCENES
-from rectbench.registry import is_path, registry
+from rectbench.matching.pose.estimate import POSE_PIXELS, PoseEstimate
+from rectbench.plugins.defaults import DEFAULT_METHOD
 from rectbench.rigs import Rig
-from rectbench.types import FloatArray, Images, Matches
 from rectbench.warps import Framing, Rectification
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from rectbench.applications.export.exporting import Exported
-    from rectbench.applications.rectified_images import RectifiedImages
+    from rectbench.applications.export.dataset import Exported
+    from rectbench.applications.photographs.rectified import RectifiedImages
     from rectbench.experiments.spec import Report
     from rectbench.images.stereo_pair import StereoPair
-    from rectbench.pairs.finding.names import FilePair
     from rectbench.rendering.truth import Truth
-
-SIDES = ("left", "right")
 
 
 def rectify(
@@ -66,18 +63,17 @@ def rectify(
     Returns the rectification, see `Rectification`. Raises UnknownName for a method or option that
     does not exist; InvalidInput for an argument that cannot be used; Unsupported, with the reason,
     where the method cannot serve this rig; InvalidResult where a plugin's answer is no rectification.
+
+    >>> import rectbench as rb
+    >>> rig = rb.load_rig("sony-as200v").scaled(0.1)
+    >>> rect = rb.rectify(rig, "abraham", law="equisolid")
+    >>> rect.size
+    (131, 121)
+    >>> rect.left.forward([[80.0, 50.0]]).shape
+    (1, 2)
     """
-    if not isinstance(rig, Rig):
-        raise InvalidInput(f"rig is {type(rig).__name__}; expected a Rig, see rectbench.load_rig")
-    plugin = registry(METHODS).get(method)
-    problem = pose_problem(
-        rig,
-        pixels=None if pixels is None else _checked_pixels(pixels, "pixels"),
-        matches=None if matches is None else _checked_matches(matches),
-        images=None if images is None else _checked_images(images, rig),
-        seed=_checked_seed(seed),
-    )
-    return fit(plugin, problem, checked_options(plugin, options))
+    request = SeededMethodRequest(method=method, options=options, seed=seed)
+    return rectify_rig(checked_rig(rig), request, images=images, pixels=pixels, matches=matches)
 
 
 def rectify_images(
@@ -119,52 +115,24 @@ def rectify_images(
         cameras are meant, where the calibration does not tell.
     progress : a bar on stderr; where there are several pairs and a terminal by default.
 
-    Returns what was made; see `rectbench.applications.rectified_images` for the files, and for what
+    Returns what was made; see `rectbench.applications.photographs.rectify` for the files, and for what
     is raised.
+
+    >>> import tempfile, cv2, numpy as np, rectbench as rb
+    >>> rig, folder = rb.load_rig("sony-as200v").scaled(0.1), Path(tempfile.mkdtemp())
+    >>> width, height = rig.left.size
+    >>> for side in ("left", "right"):
+    ...     _ = cv2.imwrite(str(folder / f"{side}.png"), np.zeros((height, width, 3), np.uint8))
+    >>> made = rb.rectify_images(
+    ...     folder / "left.png", folder / "right.png", rig, folder / "out", tables=["npz"], measured_pairs=0
+    ... )
+    >>> made.method, (folder / "out" / "maps.npz").exists()
+    ('local-homography', True)
     """
-    from rectbench.applications.rectified_images import Wanted, first_readable, rectify_images
-    from rectbench.matching.pose.uncalibrated import uncalibrated
-    from rectbench.pairs.finding.image_pairs import image_pairs
-    from rectbench.progress import progress_for
-    from rectbench.runs.record import check_writable
+    given = {name: value for name, value in locals().items() if name not in ("framing", "progress")}
+    from rectbench.applications.photographs.rectify import rectify_photographs
 
-    check_writable(Path(out))
-    wanted = Wanted(
-        method=str(method or (UNCALIBRATED_METHOD if rig is None else DEFAULT_METHOD)),
-        options=options or {},
-        framing=framing or Framing(),
-        tables=tuple(tables),
-        filter="area" if antialias else "point",
-        measured_pairs=measured_pairs,
-        seed=_checked_seed(seed),
-        without_calibration=rig is None,
-    )
-    pairing = image_pairs(str(left), str(right))
-    _, images = first_readable(pairing.pairs)
-    if rig is None:
-        calibrated, matches = uncalibrated(images, seed=seed)
-    else:
-        size, matches = (images.left.shape[1], images.left.shape[0]), None
-        if cameras is None:
-            _refuse_guessed_cameras(rig, pairing.pairs[0])
-        calibrated = rig if isinstance(rig, Rig) else load_rig_of_images(rig, size, unit, cameras)
-    if max_angle_deg is not None:
-        calibrated = calibrated.within(max_angle_deg)
-    bars = progress_for(False if len(pairing.pairs) == 1 else progress)
-    return rectify_images(pairing, calibrated, wanted, Path(out), matches=matches, progress=bars)
-
-
-def _refuse_guessed_cameras(rig: Rig | RigSource | Sequence[RigSource], pair: FilePair) -> None:
-    """Raise InvalidInput for images numbered as others than the first two cameras of a file of many."""
-    from rectbench.pairs.finding.names import camera_numbers
-
-    numbers = camera_numbers(pair)
-    files = [] if isinstance(rig, Rig) else [rig] if isinstance(rig, str | os.PathLike) else list(rig)
-    if numbers is not None and any(map(holds_many, files)):
-        raise InvalidInput(
-            f"{pair.left} is of camera {numbers[0]}, and {files[0]} may hold many; expected the names of two "
-            "(cameras, --cameras)"
-        )
+    return rectify_photographs(RectifyRequest(**given, **vars(framing or Framing())), progress)
 
 
 def estimate_pose(
@@ -194,23 +162,19 @@ def estimate_pose(
     contradicts the rig's own pose, as that of swapped images does. `estimate.rig(rig)` is the rig
     in that pose. Raises PoseNotFound, with the reason, where the images tell no pose: too few
     matches, none that agree, or a turn alone; InvalidInput for images that are not this rig's.
+
+    >>> import cv2, rectbench as rb
+    >>> rig = rb.load_rig("t265")
+    >>> images = [cv2.imread(f"{side}.png") for side in ("left", "right")]  # doctest: +SKIP
+    >>> rig = rb.estimate_pose(images, rig).rig(rig)  # doctest: +SKIP
+    >>> rb.estimate_pose([], rig, ratio=0)
+    Traceback (most recent call last):
+    rectbench.errors.InvalidInput: ratio is 0; expected a number above 0
     """
-    if not isinstance(rig, Rig):
-        raise InvalidInput(f"rig is {type(rig).__name__}; expected a Rig, see rectbench.load_rig")
-    pair = _checked_images(images, rig)
-    found = pose_from_images(
-        rig.left,
-        rig.right,
-        pair,
-        detector=detector,
-        ratio=_checked_positive(ratio, "ratio"),
-        farthest=None if farthest is None else _checked_positive(farthest, "farthest"),
-        working_pixels=None
-        if working_pixels is None
-        else _checked_positive(working_pixels, "working_pixels"),
-        seed=_checked_seed(seed),
+    settings = PoseSettings(
+        detector=detector, ratio=ratio, farthest=farthest, working_pixels=working_pixels, seed=seed
     )
-    return replace(found, note=found.contradiction(rig))
+    return estimate_rig_pose(images, checked_rig(rig), settings)
 
 
 def render(
@@ -236,14 +200,18 @@ def render(
 
     Returns the images and the truth about them. Raises UnknownName, InvalidInput, or Unavailable
     where this machine cannot render.
-    """
-    from rectbench.rendering.pair import render_pair
 
-    found = registry(SCENES).get(scene)
-    calibrated = rig if isinstance(rig, Rig) else load_rig(rig)
-    true_rig = placed(calibrated, found.name, motion, _checked_seed(seed), _checked_width(image_width))
-    noise = render_seed(found.name, calibrated.name, motion, seed)
-    return render_pair(found.value.build(seed), true_rig, seed=noise, spp=spp, quality=quality)
+    >>> import rectbench as rb
+    >>> pair, truth = rb.render("street", "t265", seed=1, image_width=400)  # doctest: +SKIP
+    >>> px_left, px_right = truth.matches(4000)  # doctest: +SKIP
+    >>> rb.render("street", "t265", image_width=0)
+    Traceback (most recent call last):
+    rectbench.errors.InvalidInput: image_width is 0; expected a width in pixels
+    """
+    request = RenderRequest(**locals())
+    from rectbench.applications.render import render
+
+    return render(request)
 
 
 def export_dataset(
@@ -274,26 +242,17 @@ def export_dataset(
     calibrations; `README.md`, which says what each file holds and how it is read, and `dataset.json`. See
     `rectbench.applications.export`. Raises UnknownName, InvalidInput (for a folder of another dataset, too),
     Unsupported where the method cannot serve the rig, Unavailable where this machine cannot render.
-    """
-    from rectbench.applications.export.exporting import Export, export_dataset
-    from rectbench.progress import progress_for
-    from rectbench.runs.record import check_writable
 
-    check_writable(Path(out))
-    checked = [_checked_seed(seed) for seed in dict.fromkeys(seeds)]
-    if not checked:
-        raise InvalidInput("seeds are empty; expected whole numbers from 0 on, a pair each")
-    export = Export(
-        scene_source=str(Path(scene).resolve()) if is_path(scene) else str(scene),
-        rig=rig if isinstance(rig, Rig) else load_rig(rig),
-        motion=motion,
-        spp=spp,
-        quality=quality,
-        image_width=_checked_width(image_width),
-        method=str(method),
-        options=options or {},
-    )
-    return export_dataset(export, checked, Path(out), progress_for(progress))
+    >>> import rectbench as rb
+    >>> made = rb.export_dataset("street", "t265", "dataset", seeds=[0, 1])  # doctest: +SKIP
+    >>> rb.export_dataset("street", "t265", "dataset", seeds=[])
+    Traceback (most recent call last):
+    rectbench.errors.InvalidInput: seeds are empty; expected whole numbers from 0 on, a pair each
+    """
+    given = {name: value for name, value in locals().items() if name != "progress"}
+    from rectbench.applications.export.dataset import export_dataset
+
+    return export_dataset(ExportRequest(**given), progress)
 
 
 def run(
@@ -315,87 +274,14 @@ def run(
     A report of photographs, such as "real", takes them from the folder `data`.
 
     The arguments are those of `runs.making.run`. Returns the rows of `results.parquet`.
+
+    >>> import rectbench as rb
+    >>> table = rb.run("quick", methods=["+my_rectifier.py"], jobs=2)  # doctest: +SKIP
+    >>> rb.run("quick", jobs=0)
+    Traceback (most recent call last):
+    rectbench.errors.InvalidInput: jobs is 0; expected a whole number from 1 on
     """
-    from rectbench.progress import progress_for
-    from rectbench.reporting.report import write_report
-    from rectbench.runs import making
+    given = {name: value for name, value in locals().items() if name != "progress"}
+    from rectbench.applications.run_report import run_report
 
-    table = making.run(
-        report,
-        out,
-        methods=methods,
-        scenes=scenes,
-        rigs=rigs,
-        seeds=seeds,
-        data=data,
-        options=options,
-        jobs=jobs,
-        dask=dask,
-        fresh=fresh,
-        progress=progress,
-    )
-    write_report(making.run_folder(report, out), progress=progress_for(progress))
-    return table
-
-
-def _checked_seed(seed: Any) -> int:
-    if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or seed < 0:
-        raise InvalidInput(f"seed is {seed!r}; expected a whole number from 0 on")
-    return int(seed)
-
-
-def _checked_width(image_width: Any) -> int | None:
-    if image_width is None:
-        return None
-    if not isinstance(image_width, int | np.integer) or image_width < 1:
-        raise InvalidInput(f"image_width is {image_width!r}; expected a width in pixels")
-    return int(image_width)
-
-
-def _checked_positive(value: Any, name: str) -> float:
-    if isinstance(value, bool) or not isinstance(value, int | float | np.number) or not 0 < value < np.inf:
-        raise InvalidInput(f"{name} is {value!r}; expected a number above 0")
-    return float(value)
-
-
-def _checked_pixels(pixels: ArrayLike, name: str) -> FloatArray:
-    try:
-        points = np.asarray(pixels, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise InvalidInput(f"{name} are no numbers; expected [N, 2] pixels") from None
-    if points.ndim != 2 or points.shape[1] != 2 or not len(points):
-        raise InvalidInput(f"{name} have shape {points.shape}; expected [N, 2]")
-    if not np.isfinite(points).all():
-        raise InvalidInput(f"{name} hold NaN or infinity; expected finite pixels")
-    return points
-
-
-def _checked_matches(matches: Sequence[ArrayLike]) -> Matches:
-    if not isinstance(matches, Sequence) or len(matches) != 2:
-        raise InvalidInput(f"matches {_held(matches)}; expected (left [N, 2], right [N, 2])")
-    left, right = (_checked_pixels(px, f"{side} matches") for px, side in zip(matches, SIDES, strict=True))
-    if left.shape != right.shape:
-        raise InvalidInput(f"matches have {len(left)} left and {len(right)} right pixels; expected as many")
-    return Matches(left, right)
-
-
-def _held(given: object) -> str:
-    return f"hold {len(given)} arrays" if isinstance(given, Sequence) else f"are {type(given).__name__}"
-
-
-def _checked_images(images: StereoPair | Sequence[ArrayLike], rig: Rig) -> Images:
-    given: list[Any] = []
-    if hasattr(images, "left") and hasattr(images, "right"):
-        given = [images.left, images.right]
-    elif isinstance(images, Sequence):
-        given = list(images)
-    if len(given) != 2:
-        raise InvalidInput(f"images {_held(images)}; expected (left, right)")
-    arrays: list[NDArray[np.generic]] = [np.asarray(image) for image in given]
-    for side, image in zip(SIDES, arrays, strict=True):
-        camera = getattr(rig, side)
-        if image.ndim not in (2, 3) or image.shape[:2] != (camera.height, camera.width):
-            size = "x".join(map(str, image.shape[1::-1]))
-            expected = f"{camera.width}x{camera.height}, the size of rig {rig.name}'s camera"
-            raise InvalidInput(f"the {side} image is {size} px; expected {expected}")
-    return Images(*arrays)
+    return run_report(RunRequest(**given), progress)

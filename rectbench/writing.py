@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
-from rectbench.errors import RectbenchError, Unavailable
+from rectbench.errors import InvalidInput, RectbenchError, Unavailable
 
 
 def write_atomically(path: Path, content: str | bytes) -> None:
@@ -42,6 +42,13 @@ def make_folder(folder: Path, error: type[RectbenchError] = Unavailable) -> None
     """The folder, and those it lies in; raises `error`, naming it, where there can be none."""
     with _blaming(folder, error):
         folder.mkdir(parents=True, exist_ok=True)
+
+
+def check_writable(folder: Path) -> None:
+    """Raise InvalidInput where a folder could not be written, before hours are spent on it."""
+    existing = next(path for path in (folder.absolute(), *folder.absolute().parents) if path.exists())
+    if not existing.is_dir() or not os.access(existing, os.W_OK | os.X_OK):
+        raise InvalidInput(f"{folder} cannot be written; expected a folder, or a place for one")
 
 
 def flush(path: Path) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import rectbench as rb
+from rectbench.plugins.rectifier import pose_problem
 from tests.experiments.fakes import write_method, write_scene
 
 
@@ -36,7 +37,7 @@ def test_rectify_takes_a_file(rig: rb.Rig, tmp_path: Path) -> None:
 def test_matches_reach_the_method_that_needs_them(rig: rb.Rig) -> None:
     usual = rb.rectify(rig, "hartley")
     rng = np.random.default_rng(0)
-    matches = rb.rectify.__globals__["pose_problem"](rig).matches
+    matches = pose_problem(rig).matches
     noisy = [px + rng.normal(0, 0.5, px.shape) for px in matches]
     other = rb.rectify(rig, "hartley", matches=noisy)
     assert not np.allclose(usual.left.forward([[100, 100]]), other.left.forward([[100, 100]]))

@@ -1,1 +1,1 @@
-"""What is done for one rig or one folder: choose, rectify, check, examine."""
+"""What is done for one rig or folder: rectify, reconstruct, export, check. Imports all but api and cli."""

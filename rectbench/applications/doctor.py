@@ -9,15 +9,12 @@ import re
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
 
 from rectbench import llvm
+from rectbench.applications.listing import plugin_kinds
 from rectbench.calibrations import rig_names
 from rectbench.errors import RectbenchError
-from rectbench.experiments.spec import REPORTS
-from rectbench.plugins.rectifier import METHODS
-from rectbench.plugins.scene import SCENES
-from rectbench.registry import Kind, registry
+from rectbench.registry import registry
 from rectbench.runs.machine import cpu_name, llvm_facts
 from rectbench.store.keys import versions
 from rectbench.store.store import Store
@@ -103,8 +100,7 @@ def _store() -> Finding:
 
 
 def _plugins() -> Iterator[Finding]:
-    kinds: tuple[Kind[Any], ...] = (METHODS, SCENES, REPORTS)
-    for kind in kinds:
+    for kind in plugin_kinds():
         found = registry(kind)
         yield Finding(kind.name, bool(found.names()), ", ".join(found.names()) or "none are installed")
         for place, reason in found.broken.items():

@@ -1,6 +1,6 @@
-"""The command line. Every verb is a few lines over the Python call of the same name.
+"""The command line. Every verb is a few lines over a function that anybody can call; imports all below.
 
-Modules are imported by the verb that needs them, so that `rectbench --help` is there at once.
+What a verb needs beside its request is imported when it runs, so that `rectbench --help` is there at once.
 Exit codes: 0 good, 1 a regression or a failed check, 2 wrong usage or a broken environment,
 3 incomplete or nothing measured.
 """
@@ -10,38 +10,28 @@ from __future__ import annotations
 import logging
 import sys
 
-from rectbench.cli import (
-    calibrations,
-    exporting,
-    machine,
-    names,
-    photographs,
-    rectifying,
-    rendering,
-    running,
-    uncertainty,
-)
+from rectbench.cli import machine, photographs, rendering, running
 from rectbench.cli.app import WRONG_USAGE, app
 from rectbench.errors import RectbenchError
 
-for verb in (
-    names.list_,
+for command in (
+    machine.list_,
     running.run,
     running.report,
     running.gate,
     running.compare,
     rendering.render,
-    exporting.export,
-    rectifying.rectify,
+    rendering.export,
+    photographs.rectify,
     photographs.pose,
     photographs.reconstruct,
-    uncertainty.uncertainty,
-    calibrations.convert,
+    photographs.uncertainty,
+    photographs.convert,
     machine.check,
     machine.doctor,
     machine.gc,
 ):
-    app.command(verb.__name__.strip("_"))(verb)
+    app.command(command.__name__)(command)
 
 
 def main() -> None:

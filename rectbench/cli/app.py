@@ -1,13 +1,22 @@
-"""The application that the verbs join, and the arguments that several of them take."""
+"""The application that the verbs join: the words of a verb are the fields of its request."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
+from inspect import Parameter, Signature
 from pathlib import Path
-from typing import Annotated
+from types import NoneType, UnionType
+from typing import Annotated, Any, TypeVar, Union, get_args, get_origin
 
 import typer
+from pydantic.fields import FieldInfo
 
-WRONG_USAGE, INCOMPLETE = 2, 3
+from rectbench.applications.requests.request import Request, Word
+from rectbench.errors import InvalidInput
+
+GOOD, FAILED, WRONG_USAGE, INCOMPLETE = 0, 1, 2, 3
+REST = "rest"
+"""The parameter of words that are left at the end."""
 
 app = typer.Typer(
     help="A bench for stereo rectification: render, rectify, measure, report.",
@@ -17,41 +26,85 @@ app = typer.Typer(
     rich_markup_mode=None,  # square brackets in help texts are TOML sections
 )
 
-RunFolder = Annotated[Path, typer.Argument(metavar="RUN", help="A run's folder.")]
-OptionTexts = Annotated[
-    list[str] | None,
-    typer.Option("--option", metavar="METHOD.NAME=VALUE", help="An option of a method; repeatable."),
-]
-LeftImage = Annotated[Path, typer.Argument(metavar="LEFT", help="The left image.")]
-RightImage = Annotated[Path, typer.Argument(metavar="RIGHT", help="The right image.")]
-RigFiles = Annotated[
-    list[str],
-    typer.Option(
-        metavar="CALIB",
-        help="The rig's calibration file or folder, or a rig's name; repeatable where files are several.",
-    ),
-]
-MaxAngle = Annotated[
-    float | None, typer.Option(help="The image circle: the lenses show nothing beyond this angle.")
-]
-Method = Annotated[str, typer.Option("--method", "-m", help="A method's name, or a file.")]
-MethodOptions = Annotated[
-    list[str] | None,
-    typer.Option("--option", metavar="NAME=VALUE", help="An option of the method; repeatable."),
-]
-MethodSeed = Annotated[int, typer.Option(help="Of the method's random choices.")]
-Cameras = Annotated[
-    list[str] | None,
-    typer.Option(metavar="LEFT,RIGHT", help="Two cameras of a calibration that holds more, by its names."),
-]
-Unit = Annotated[
-    str | None,
-    typer.Option(help="What the calibration's translations are in, if not metres: mm, cm, in or ft."),
-]
+R = TypeVar("R", bound=Request)
 
 
-def split_names(names: list[str] | None) -> list[str] | None:
-    """Names of repeated options and of comma-separated lists, in one list."""
-    if names is None:
-        return None
-    return [name.strip() for text in names for name in text.split(",") if name.strip()]
+def verb(request: type[R]) -> Callable[[Callable[[R], int]], Callable[..., None]]:
+    """A verb of a function: it is called with the request that the words make, and gives the exit code."""
+
+    def made(does: Callable[[R], int]) -> Callable[..., None]:
+        def command(**words: Any) -> None:
+            raise typer.Exit(does(request(**_given(request, words))))
+
+        command.__signature__ = Signature(list(_parameters(request)))  # type: ignore[attr-defined]
+        command.__name__, command.__doc__ = does.__name__.strip("_"), does.__doc__
+        return command
+
+    return made
+
+
+def _parameters(request: type[Request]) -> Iterator[Parameter]:
+    """What typer reads: a field is an option, but for those that have their place."""
+    for name, field in request.model_fields.items():
+        word = _word(field)
+        least: Any = next((limit.ge for limit in field.metadata if hasattr(limit, "ge")), None)
+        info: Any = typer.Argument(metavar=word.metavar, help=field.description)
+        if not word.is_positional:
+            names = word.names or (f"--{name.replace('_', '-')}",)
+            info = typer.Option(*names, metavar=word.metavar, min=least, help=field.description)
+        yield _parameter(name, _word_type(field), info, _default(field))
+    for name, field in request.model_fields.items():
+        if (word := _word(field)).takes_rest:
+            info = typer.Argument(metavar=word.metavar, help=f"As --{name} {word.metavar}.")
+            yield _parameter(REST, list[str], info, None)
+
+
+def _parameter(name: str, kind: Any, info: Any, default: Any) -> Parameter:
+    wanted = kind if default is Parameter.empty else kind | None
+    return Parameter(name, Parameter.KEYWORD_ONLY, default=default, annotation=Annotated[wanted, info])
+
+
+def _word(field: FieldInfo) -> Word:
+    return next((mark for mark in field.metadata if isinstance(mark, Word)), Word())
+
+
+def _word_type(field: FieldInfo) -> Any:
+    """What a word of the command line is read as; what typer has no word for is a text, or several."""
+    is_union = get_origin(field.annotation) in (Union, UnionType)
+    kinds = get_args(field.annotation) if is_union else (field.annotation,)
+    kind, *others = [_bare(kind) for kind in kinds if kind is not NoneType]
+    word = _word(field)
+    if word.has_commas or word.takes_rest or get_origin(kind) in (list, dict):
+        return list[str]
+    return kind if not others and kind in (bool, int, float, str, Path) else str
+
+
+def _bare(kind: Any) -> Any:
+    return get_args(kind)[0] if get_origin(kind) is Annotated else kind
+
+
+def _default(field: FieldInfo) -> Any:
+    """As typer has it; of a calibration None, since the words at the end may have it."""
+    if field.is_required():
+        return None if _word(field).takes_rest else Parameter.empty
+    if isinstance(field.default, list | tuple | dict):
+        return [str(value) for value in field.default] or None
+    return field.default
+
+
+def _given(request: type[Request], words: dict[str, Any]) -> dict[str, Any]:
+    """The fields that words are given for; the rest is for the request to fill."""
+    given = {}
+    for name, field in request.model_fields.items():
+        word, value = _word(field), words[name]
+        if word.takes_rest:
+            value = [*(value or []), *(words[REST] or [])] or None
+            if value is None and field.is_required():
+                flags = f"--{name} {word.metavar}, or {word.metavar} at the end"
+                raise InvalidInput(f"no {name} is given; expected {flags}")
+        if value is None or value == _default(field):
+            continue
+        if word.has_commas:
+            value = [part.strip() for text in value for part in text.split(",") if part.strip()]
+        given[name] = value
+    return given

@@ -1,108 +1,84 @@
-"""The verbs for an image pair of one's own: its pose, and its reconstruction."""
+"""The verbs for photographs and calibrations of one's own."""
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
-
-import typer
-
-from rectbench.cli.app import (
-    Cameras,
-    LeftImage,
-    MaxAngle,
-    Method,
-    MethodOptions,
-    MethodSeed,
-    RigFiles,
-    RightImage,
-    Unit,
-    split_names,
+from rectbench.applications.requests.photographs import (
+    ConvertRequest,
+    PoseRequest,
+    ReconstructRequest,
+    RectifyRequest,
+    UncertaintyRequest,
 )
-from rectbench.plugins.defaults import DEFAULT_METHOD
-
-if TYPE_CHECKING:
-    from rectbench.rigs import Rig
-    from rectbench.types import Images
+from rectbench.cli.app import GOOD, INCOMPLETE, verb
 
 
-def pose(
-    left: LeftImage,
-    right: RightImage,
-    rig: RigFiles,
-    out: Annotated[
-        Path | None, typer.Option("--out", "-o", metavar="FILE", help="Write the rig in this pose as YAML.")
-    ] = None,
-    detector: Annotated[str, typer.Option(help="Of features: sift, akaze, orb or surf.")] = "sift",
-    seed: Annotated[int, typer.Option(help="Of the random samples.")] = 0,
-    max_angle_deg: MaxAngle = None,
-    unit: Unit = None,
-    cameras: Cameras = None,
-) -> None:
+@verb(RectifyRequest)
+def rectify(request: RectifyRequest) -> int:
+    """Rectify image pairs: images, masks, lookup tables, the rig's description, and what the frame costs.
+
+    LEFT and RIGHT are two images, two folders, or two patterns such as 'left/*.png' in quotation marks.
+    Exit code 3 where some of several pairs had to be left out.
+    """
+    from rectbench.applications.photographs.rectify import rectify_photographs
+    from rectbench.cli.printing.rectified import show_rectified
+
+    made = rectify_photographs(request)
+    show_rectified(made)
+    return INCOMPLETE if made.left_out else GOOD
+
+
+@verb(PoseRequest)
+def pose(request: PoseRequest) -> int:
     """Estimate from an image pair how the right camera stands to the left one.
 
     The calibration gives the two lenses and the length of the baseline; its own pose is compared with
     the estimate.
     """
-    from rectbench import api
-    from rectbench.cli import printing as terminal
-    from rectbench.images.reading import read_images
+    from rectbench.applications.calibrated import calibrated_pair
+    from rectbench.applications.estimate_pose import estimate_rig_pose
+    from rectbench.cli.printing.pose import show_pose
 
-    images = read_images(left, right)
-    calibrated = _calibrated(rig, images, max_angle_deg, unit, cameras)
-    estimate = api.estimate_pose(images, calibrated, detector=detector, seed=seed)
-    terminal.show_pose(estimate, calibrated)
-    if out is not None:
-        estimate.rig(calibrated).save(out)
-        print(out)
+    rig, images = calibrated_pair(request)
+    estimate = estimate_rig_pose(images, rig, request)
+    show_pose(estimate, rig)
+    if request.out is not None:
+        estimate.rig(rig).save(request.out)
+        print(request.out)
+    return GOOD
 
 
-def reconstruct(
-    left: LeftImage,
-    right: RightImage,
-    rig: RigFiles,
-    out: Annotated[Path, typer.Option("--out", "-o", help="Folder for what is made.")] = Path(
-        "reconstructed"
-    ),
-    method: Method = DEFAULT_METHOD,
-    option: MethodOptions = None,
-    seed: MethodSeed = 0,
-    max_angle_deg: MaxAngle = None,
-    unit: Unit = None,
-    cameras: Cameras = None,
-    matcher: Annotated[
-        str, typer.Option(help="The dense matcher: sgbm, sgbm-5way, sgbm-8way or bm.")
-    ] = "sgbm",
-    nearest_baselines: Annotated[
-        float, typer.Option(help="Nothing nearer is sought, in multiples of the baseline.")
-    ] = 4.0,
-    pixels: Annotated[
-        float, typer.Option(help="A rectified image of more pixels is made smaller first.")
-    ] = 1e6,
-) -> None:
+@verb(ReconstructRequest)
+def reconstruct(request: ReconstructRequest) -> int:
     """Reconstruct an image pair in 3-D: a coloured point cloud, depth, disparity and a picture."""
-    from rectbench import api
-    from rectbench.cli.configuring import read_method_options
-    from rectbench.images.reading import read_images
-    from rectbench.matching import reconstruct
-    from rectbench.matching.dense.matchers import matcher_named
-    from rectbench.reporting.pictures.reconstructed import write_reconstruction
+    from rectbench.applications.reconstruct import reconstruct_pair
 
-    matcher_named(matcher)  # a wrong name is told before the work begins
-    images = read_images(left, right)
-    calibrated = _calibrated(rig, images, max_angle_deg, unit, cameras)
-    rect = api.rectify(calibrated, method, images=images, seed=seed, **read_method_options(option))
-    found = reconstruct(rect, *images, matcher, pixels=pixels, nearest_baselines=nearest_baselines)
-    for file in write_reconstruction(found, out):
+    for file in reconstruct_pair(request):
         print(file)
+    return GOOD
 
 
-def _calibrated(
-    rig: list[str], images: Images, max_angle_deg: float | None, unit: str | None, cameras: list[str] | None
-) -> Rig:
-    """The rig of calibration files, its lenses held to their image circle."""
-    from rectbench.calibrations import load_rig_of_images
+@verb(UncertaintyRequest)
+def uncertainty(request: UncertaintyRequest) -> int:
+    """Tell how far the calibration's uncertainty moves rows and depth: a picture, numbers and arrays.
 
-    size = images.left.shape[1::-1]
-    calibrated = load_rig_of_images(rig, size, unit=unit, cameras=split_names(cameras))
-    return calibrated if max_angle_deg is None else calibrated.within(max_angle_deg)
+    With two images and nothing said about the pose, it is estimated from them with its own covariance, to
+    which what is said about lenses and baseline adds.
+    """
+    from rectbench.applications.uncertainty import propagate_uncertainty
+    from rectbench.cli.printing.uncertainty import show_uncertainty
+
+    propagated = propagate_uncertainty(request)
+    show_uncertainty(propagated.found, propagated.covariance)
+    for file in propagated.files:
+        print(file)
+    return GOOD
+
+
+@verb(ConvertRequest)
+def convert(request: ConvertRequest) -> int:
+    """Write a calibration in another format, exactly, or tell why that format cannot hold it."""
+    from rectbench.applications.calibrated import rig_of
+
+    for file in rig_of(request).save(request.out, request.to):
+        print(file)
+    return GOOD

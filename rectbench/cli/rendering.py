@@ -1,35 +1,32 @@
-"""The verb that renders a pair."""
+"""The verbs that render: a pair, and a dataset for other tools."""
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import Annotated
-
-import typer
+from rectbench.applications.requests.rendering import ExportRequest, RenderRequest
+from rectbench.cli.app import GOOD, verb
 
 
-def render(
-    scene: Annotated[
-        str, typer.Argument(metavar="SCENE", help="A scene's name, or a .py or Mitsuba .xml file.")
-    ],
-    rig: Annotated[str, typer.Argument(metavar="RIG", help="A rig's name, or a calibration file.")],
-    out: Annotated[Path, typer.Option("--out", "-o", help="Folder for images, truth and rig.")] = Path(
-        "rendered"
-    ),
-    motion: Annotated[str, typer.Option(help="How the right camera stands to the left.")] = "as-calibrated",
-    seed: Annotated[int, typer.Option(help="Of scene, motion and noise.")] = 0,
-    spp: Annotated[int, typer.Option(help="Samples a pixel, a power of two.")] = 64,
-    quality: Annotated[str, typer.Option(help="path or fast.")] = "path",
-    width: Annotated[int | None, typer.Option(help="Scale the rig to this image width, pixels.")] = None,
-) -> None:
+@verb(RenderRequest)
+def render(request: RenderRequest) -> int:
     """Render a rig in a scene: left.png, right.png, truth.npz, truth EXRs and rig.yaml."""
-    from rectbench import api
-    from rectbench.runs.record import check_writable
+    from rectbench.applications.render import render, save_rendered
+    from rectbench.writing import check_writable
 
-    check_writable(out)
-    pair, truth = api.render(scene, rig, motion, seed, spp, quality, width)
-    pair.save(out)
-    truth.save(out / "truth.npz")
-    truth.save_exr(out)
-    truth.rig.save(out / "rig.yaml")
-    print(out)
+    check_writable(request.out)
+    save_rendered(*render(request), request.out)
+    print(request.out)
+    return GOOD
+
+
+@verb(ExportRequest)
+def export(request: ExportRequest) -> int:
+    """Render a dataset: images, depth, flow, rectified pairs with disparity, masks and calibrations.
+
+    README.md in the folder says what each file is and how it is read. An export that was cut off goes on
+    where it was; one with more seeds adds pairs.
+    """
+    from rectbench.applications.export.dataset import export_dataset
+
+    made = export_dataset(request)
+    print(f"{made.folder}: {len(made.rendered)} pairs rendered, {len(made.kept)} there already")
+    return GOOD

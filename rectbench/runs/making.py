@@ -14,7 +14,8 @@ from rectbench.experiments.planning import Selection, find_report, make_plan
 from rectbench.experiments.spec import Report
 from rectbench.progress import progress_for
 from rectbench.registry import is_path
-from rectbench.runs.record import RunRecord, check_writable, table_of, write_run
+from rectbench.runs.record import RunRecord, table_of, write_run
+from rectbench.writing import check_writable
 
 RUNS = Path("runs")
 """Where run folders go unless the user says otherwise."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import shlex
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -160,13 +159,6 @@ def table_of(plan: Plan, outcomes: Sequence[Outcome]) -> pd.DataFrame:
     metrics = catalogue.in_display_order(measured.union(catalogue.promised))
     table = pd.DataFrame(rows, columns=[*LEADING, "group", *metrics, "notes"])
     return table.astype({**dict.fromkeys(metrics, "float64"), "seed": "int64"})
-
-
-def check_writable(folder: Path) -> None:
-    """Raise InvalidInput where a run's folder could not be written, before hours are spent on it."""
-    existing = next(path for path in (folder.absolute(), *folder.absolute().parents) if path.exists())
-    if not existing.is_dir() or not os.access(existing, os.W_OK | os.X_OK):
-        raise InvalidInput(f"{folder} cannot be written; expected a folder, or a place for one")
 
 
 def write_run(folder: Path, table: pd.DataFrame, record: RunRecord) -> None:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from rectbench.applications.conformance import check_method
+from rectbench.applications.check_method import check_method
 from rectbench.plugins.rectifier import METHODS
 from rectbench.registry import registry
 

@@ -1,1 +1,1 @@
-"""A rendered dataset for other tools."""
+"""A rendered dataset for other tools. Imports the applications beside it and what is below."""

@@ -114,9 +114,7 @@ def pair_chart(
             scale = run.catalogue.column(key).scale
             panels[title] = {
                 label: {
-                    method: bar_of(
-                        run.select(results, place=place, method=method), key, run.catalogue.column(key).scale
-                    )
+                    method: bar_of(run.select(results, place=place, method=method), key, scale)
                     for method in run.methods
                 }
                 for place, label in labels.items()

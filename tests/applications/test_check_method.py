@@ -4,13 +4,13 @@ from pathlib import Path
 
 import pytest
 
-from rectbench.applications.conformance import RIGS, Finding, check_method
+from rectbench.applications.check_method import RIGS, CheckResult, check_method
 from rectbench.plugins.rectifier import METHODS
 from rectbench.registry import registry
 from tests.experiments.fakes import write_method
 
 
-def findings(path: str) -> list[Finding]:
+def findings(path: str) -> list[CheckResult]:
     return list(check_method(registry(METHODS).get(path)))
 
 

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from rectbench.applications.export import dataset_files as encode
-from rectbench.applications.rectified_files import SIDES, Files, description_files
+from rectbench.applications.export import file_formats as encode
+from rectbench.applications.rectification_files import SIDES, Files, description_files
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
 from rectbench.images.stereo_pair import StereoPair

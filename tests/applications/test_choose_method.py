@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import rectbench as rb
-from rectbench.applications.choosing import ROWS_AS_GOOD_PX, best_method
+from rectbench.applications.choose_method import ROWS_AS_GOOD_PX, best_method
 from rectbench.registry import forget_plugins
 from rectbench.types import Matches
 from rectbench.warps import Framing

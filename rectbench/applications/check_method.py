@@ -33,20 +33,18 @@ STEP_PX = 1e-3
 SCORED_SHARE = 0.05
 """A method maps at least this share of the evaluation pixels."""
 
-Result = Literal["passed", "failed", "unsupported"]
-
 
 @dataclass(frozen=True)
-class Finding:
+class CheckResult:
     """What one check found on one rig."""
 
     rig: str
     check: str
-    result: Result
+    result: Literal["passed", "failed", "unsupported"]
     detail: str
 
 
-def check_method(plugin: Plugin[Rectifier]) -> Iterator[Finding]:
+def check_method(plugin: Plugin[Rectifier]) -> Iterator[CheckResult]:
     """All checks of a rectifier on several rigs, as they are done.
 
     A rig the method refuses as Unsupported fails nothing, but refusing all of them does.
@@ -59,17 +57,17 @@ def check_method(plugin: Plugin[Rectifier]) -> Iterator[Finding]:
         try:
             rectification = fit(plugin, problem, checked_options(plugin, {}))
         except Unsupported as refusal:
-            yield Finding(name, "fit", "unsupported", str(refusal))
+            yield CheckResult(name, "fit", "unsupported", str(refusal))
             continue
         except Exception as error:  # a plugin may raise anything
-            yield Finding(name, "fit", "failed", outcome_of(error).reason)
+            yield CheckResult(name, "fit", "failed", outcome_of(error).reason)
             continue
         supported = True
-        yield Finding(name, "fit", "passed", f"{rectification.size[0]}x{rectification.size[1]} px")
+        yield CheckResult(name, "fit", "passed", f"{rectification.size[0]}x{rectification.size[1]} px")
         for title, check in _CHECKS.items():
             yield _found(name, title, check, plugin, problem, rectification)
     if not supported:
-        yield Finding("all", "fit", "failed", "the method serves none of the rigs")
+        yield CheckResult("all", "fit", "failed", "the method serves none of the rigs")
 
 
 Check = Callable[[Plugin[Rectifier], Problem, Rectification], tuple[bool, str]]
@@ -77,22 +75,22 @@ Check = Callable[[Plugin[Rectifier], Problem, Rectification], tuple[bool, str]]
 
 def _found(
     rig: str, title: str, check: Check, plugin: Plugin[Rectifier], problem: Problem, rect: Rectification
-) -> Finding:
+) -> CheckResult:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", RuntimeWarning)  # NaN is what stands for "no pixel here"
             passed, detail = check(plugin, problem, rect)
     except Exception as error:  # a plugin's own warp may raise anything
         passed, detail = False, outcome_of(error).reason
-    return Finding(rig, title, "passed" if passed else "failed", detail)
+    return CheckResult(rig, title, "passed" if passed else "failed", detail)
 
 
-def _described(plugin: Plugin[Rectifier]) -> Finding:
+def _described(plugin: Plugin[Rectifier]) -> CheckResult:
     documented = all(field.description for field in plugin.value.Options.model_fields.values())
     detail = plugin.summary or "the class has no docstring; expected one line that says what it is"
     if not documented:
         detail = "an option has no description"
-    return Finding("-", "described", "passed" if plugin.summary and documented else "failed", detail)
+    return CheckResult("-", "described", "passed" if plugin.summary and documented else "failed", detail)
 
 
 def _sides(problem: Problem, rect: Rectification) -> tuple[tuple[str, Warp, FloatArray], ...]:

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import rectbench as rb
-from rectbench.applications.export import dataset_files as encode
+from rectbench.applications.export import file_formats as encode
 from rectbench.errors import InvalidInput, UnknownName
 from rectbench.rendering.pair import Stage
 from rectbench.warps.description import load_rectification

@@ -1,6 +1,6 @@
 """A rendered dataset as a folder that other tools open: images, truth, rectified pairs, calibrations.
 
-One pair a seed, its files named by the seed and sorted by kind; `dataset_readme` says what each kind
+One pair a seed, its files named by the seed and sorted by kind; `README.md.j2` says what each kind
 is. A pair is whole when `pairs/NAME.json` is there, written last, with the SHA-256 of each of its files: an
 export that was interrupted goes on with the pairs that are not, and one with more seeds adds to those there.
 The same settings and seeds give the same bytes.
@@ -9,63 +9,58 @@ The same settings and seeds give the same bytes.
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
-from rectbench.applications.export.dataset_pair import (
+from rectbench.applications.calibrated import rig_of
+from rectbench.applications.export.pair_files import (
     calibration_files,
     image_files,
     pair_facts,
     rectified_files,
     truth_files,
 )
-from rectbench.applications.export.dataset_readme import readme_text
+from rectbench.applications.export.readme import readme_text
+from rectbench.applications.render import scene_source
+from rectbench.applications.requests.rendering import ExportRequest
 from rectbench.errors import InvalidInput
 from rectbench.pairs.rendering import RENDERING_PACKAGES, Studio, placed, render_seed
 from rectbench.pairs.rig_numbers import rig_numbers
-from rectbench.plugins.defaults import DEFAULT_METHOD
 from rectbench.plugins.fitting import checked_options, fit
 from rectbench.plugins.rectifier import METHODS, Options, Rectifier, pose_problem
 from rectbench.plugins.scene import SCENES
-from rectbench.progress import Progress
+from rectbench.progress import progress_for
 from rectbench.registry import Plugin, registry
 from rectbench.rigs import Rig
 from rectbench.store.keys import code_digest, digest, file_digest, versions
 from rectbench.warps import Rectification
-from rectbench.writing import write_atomically
+from rectbench.writing import check_writable, write_atomically
 
 DATASET_FILE, README_FILE, PAIRS_FOLDER = "dataset.json", "README.md", "pairs"
 VERSION = 1
 
 
-@dataclass(frozen=True)
-class Export:
+@dataclass(frozen=True, eq=False)
+class _Export:
     """What is exported: a rig in a scene, once a seed, rectified by a method."""
 
-    scene_source: str
-    """The scene's name, or the absolute path of its file."""
+    request: ExportRequest
     rig: Rig
-    motion: str = "as-calibrated"
-    spp: int = 64
-    quality: str = "path"
-    image_width: int | None = None
-    method: str = DEFAULT_METHOD
-    options: Mapping[str, Any] = field(default_factory=dict)
 
     def settings(self) -> dict[str, Any]:
         """All that shapes the files of a pair, but for its seed, as JSON."""
-        scene, method = registry(SCENES).get(self.scene_source), self.plugin()
+        scene, method = registry(SCENES).get(self.request.scene), self.plugin()
         return {
             "scene": scene.name,
             "scene_source": scene.digest,
             "rig": rig_numbers(self.rig),
-            "motion": self.motion,
-            "image_width": self.image_width,
-            "quality": self.quality,
-            "spp": self.spp,
+            "motion": self.request.motion,
+            "image_width": self.request.image_width,
+            "quality": self.request.quality,
+            "spp": self.request.spp,
             "method": method.name,
             "method_source": method.digest,
             "options": self.checked_options().model_dump(mode="json"),
@@ -75,7 +70,7 @@ class Export:
 
     def plugin(self) -> Plugin[Rectifier]:
         """The method; raises InvalidInput for one that works from matches, whose rows are not exact."""
-        plugin = registry(METHODS).get(self.method)
+        plugin = registry(METHODS).get(self.request.method)
         if "pose" not in plugin.value.needs:
             raise InvalidInput(
                 f"{plugin.name} works from matches, so its rows do not agree exactly; "
@@ -85,12 +80,12 @@ class Export:
 
     def checked_options(self) -> Options:
         """The method's options, those not given at their defaults."""
-        return checked_options(self.plugin(), self.options)
+        return checked_options(self.plugin(), self.request.options)
 
     def rig_of(self, seed: int) -> Rig:
         """The true rig of a seed's pair."""
-        scene = registry(SCENES).get(self.scene_source).name
-        return placed(self.rig, scene, self.motion, seed, self.image_width)
+        scene, request = registry(SCENES).get(self.request.scene).name, self.request
+        return placed(self.rig, scene, request.motion, seed, request.image_width)
 
     def rectification(self, seed: int) -> Rectification:
         """The rectification of that rig."""
@@ -108,14 +103,16 @@ class Exported:
     """Seeds whose pairs were there already."""
 
 
-def export_dataset(
-    export: Export, seeds: Sequence[int], out: Path, progress: Progress | None = None
-) -> Exported:
-    """Write the pairs of these seeds into a folder, with `dataset.json` and `README.md`.
+def export_dataset(request: ExportRequest, progress: bool | None = None) -> Exported:
+    """Write the pairs of the seeds into a folder, with `dataset.json` and `README.md`.
 
-    Raises InvalidInput where the folder holds a dataset of other settings, and Unsupported where the method
-    cannot serve the rig, before anything is rendered; Unavailable where the disk takes no more.
+    `progress` is a bar on stderr; on a terminal by default. Raises InvalidInput where the folder holds a
+    dataset of other settings, and Unsupported where the method cannot serve the rig, before anything is
+    rendered; Unavailable where the disk takes no more.
     """
+    out, seeds = request.out, list(dict.fromkeys(request.seeds))
+    check_writable(out)
+    export = _Export(request, rig_of(request))
     export.rig_of(seeds[0])  # a motion that does not exist is no other setting
     settings = export.settings()
     mark = digest(settings)
@@ -125,7 +122,7 @@ def export_dataset(
     missing = [seed for seed in seeds if seed not in whole]
     if missing:
         export.rectification(missing[0])  # a method that cannot serve this rig says so before the work begins
-    with (progress or Progress()).stage("pairs", len(missing)) as advance:
+    with progress_for(progress).stage("pairs", len(missing)) as advance:
         for seed in missing:
             found[_name(seed)] = _write_pair(export, seed, mark, out)
             advance()
@@ -140,14 +137,15 @@ def _name(seed: int) -> str:
     return f"{seed:06d}"
 
 
-def _write_pair(export: Export, seed: int, mark: str, out: Path) -> dict[str, Any]:
+def _write_pair(export: _Export, seed: int, mark: str, out: Path) -> dict[str, Any]:
     """Render and write a pair; its manifest, which is written last."""
     rect = export.rectification(seed)
-    scene, name = registry(SCENES).get(export.scene_source).name, _name(seed)
-    stage = Studio().stage(export.scene_source, seed, export.quality)
+    request, name = export.request, _name(seed)
+    scene = registry(SCENES).get(request.scene).name
+    stage = Studio().stage(scene_source(request.scene), seed, request.quality)
     truth, rectified = stage.survey(rect.rig), stage.survey_rectified(rect)
-    noise = render_seed(scene, export.rig.name, export.motion, seed)
-    images = stage.photograph(rect.rig, seed=noise, spp=export.spp)
+    noise = render_seed(scene, export.rig.name, request.motion, seed)
+    images = stage.photograph(rect.rig, seed=noise, spp=request.spp)
     calibrations, refused = calibration_files(rect.rig, name)
     contents = {
         **image_files(images, name),

@@ -5,36 +5,38 @@ from pathlib import Path
 import pytest
 
 import rectbench as rb
-from rectbench.cli.configuring import overlaid, read_config, read_options
+from rectbench.applications.requests.config_file import overlaid
+from rectbench.applications.requests.running import RunRequest
+from rectbench.applications.requests.words import option_sets_in
 
 
 def test_options_on_the_command_line_have_types() -> None:
-    assert read_options(
+    assert option_sets_in(
         ["conventional.fov_deg=80", "conventional.focal=fov", "m.on=true", "m.list=[1, 2]"]
     ) == {
         "conventional": {"fov_deg": 80, "focal": "fov"},
         "m": {"on": True, "list": [1, 2]},
     }
-    assert read_options(["local-homography.alpha-skew=0.7"]) == {"local-homography": {"alpha_skew": 0.7}}
+    assert option_sets_in(["local-homography.alpha-skew=0.7"]) == {"local-homography": {"alpha_skew": 0.7}}
 
 
 @pytest.mark.parametrize("text", ["alpha", "alpha=1", ".alpha=1", "method.=1", "=1"])
 def test_an_option_without_its_parts_says_what_is_expected(text: str) -> None:
     with pytest.raises(rb.InvalidInput, match=r"expected method\.name=value"):
-        read_options([text])
+        option_sets_in([text])
 
 
 def test_later_layers_win() -> None:
     assert overlaid({"m": {"a": 1, "b": 2}}, {"m": {"b": 3}, "n": {}}) == {"m": {"a": 1, "b": 3}, "n": {}}
 
 
-def test_a_file_says_what_the_command_line_could(tmp_path: Path) -> None:
+def test_a_file_says_what_the_command_line_could_which_wins(tmp_path: Path) -> None:
     path = tmp_path / "run.toml"
     path.write_text('[run]\nmethods = ["abraham"]\njobs = 2\n[methods.local-homography]\nalpha_skew = 0.7\n')
-    assert read_config(path) == (
-        {"methods": ["abraham"], "jobs": 2},
-        {"local-homography": {"alpha_skew": 0.7}},
-    )
+    request = RunRequest(report="quick", config=path, jobs=3, options=["local-homography.alpha_skew=0.5"])
+    assert (request.methods, request.jobs) == (["abraham"], 3)
+    assert request.options == {"local-homography": {"alpha_skew": 0.5}}
+    assert RunRequest(report="quick", config=path).options == {"local-homography": {"alpha_skew": 0.7}}
 
 
 @pytest.mark.parametrize(
@@ -54,11 +56,11 @@ def test_a_slip_in_the_file_is_named(tmp_path: Path, text: str, message: str) ->
     path = tmp_path / "run.toml"
     path.write_text(text)
     with pytest.raises(rb.InvalidInput, match=message) as caught:
-        read_config(path)
+        RunRequest(report="quick", config=path)
     assert "run.toml" in str(caught.value)
     assert "\n" not in str(caught.value)
 
 
 def test_a_file_that_is_not_there_is_named(tmp_path: Path) -> None:
     with pytest.raises(rb.InvalidInput, match=r"absent.toml cannot be read"):
-        read_config(tmp_path / "absent.toml")
+        RunRequest(report="quick", config=tmp_path / "absent.toml")

@@ -1,0 +1,94 @@
+"""What `rectbench list` can list: names with a line about each, and plugins that cannot be loaded."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from pkgutil import resolve_name
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from rectbench.errors import UnknownName
+
+if TYPE_CHECKING:
+    from rectbench.registry import Kind
+
+LISTABLE = {
+    "methods": "rectbench.plugins.rectifier:METHODS",
+    "scenes": "rectbench.plugins.scene:SCENES",
+    "rigs": "rectbench.applications.listing:_rigs",
+    "motions": "rectbench.applications.listing:_motions",
+    "poses": "rectbench.applications.listing:_poses",
+    "metrics": "rectbench.plugins.metric:METRICS",
+    "reports": "rectbench.experiments.spec:REPORTS",
+    "figures": "rectbench.plugins.figure:FIGURES",
+    "formats": "rectbench.rigs.file_formats:FORMATS",
+}
+"""Where each kind is: a `Kind` of plugins, or a function that gives entries. Imported when it is listed."""
+
+
+class Entry(NamedTuple):
+    """One thing with a name."""
+
+    name: str
+    summary: str
+    value: Any = None
+    """The plugin, of a kind of plugins."""
+
+
+@dataclass(frozen=True)
+class Listing:
+    """What there is of a kind."""
+
+    entries: tuple[Entry, ...]
+    broken: Mapping[str, str] = field(default_factory=dict)
+    """Why a plugin at a place cannot be loaded."""
+
+
+def plugin_kinds() -> list[Kind[Any]]:
+    """The kinds of plugins among what can be listed."""
+    return [source for place in LISTABLE.values() if not callable(source := resolve_name(place))]
+
+
+def listed(kind: str) -> Listing:
+    """All there is of a kind. Raises UnknownName for a kind that there is not."""
+    from rectbench.registry import registry
+
+    if kind not in LISTABLE:
+        raise UnknownName("kind", kind, LISTABLE)
+    source = resolve_name(LISTABLE[kind])
+    if callable(source):
+        return Listing(tuple(source()))
+    found = registry(source)
+    entries = (Entry(plugin.name, plugin.summary, plugin.value) for plugin in found.plugins())
+    return Listing((*entries, *(_bundles() if kind == "metrics" else ())), found.broken)
+
+
+def _bundles() -> Iterator[Entry]:
+    from rectbench.metrics.scoring import BUNDLES
+
+    return (Entry(name, f"Together: {', '.join(members)}.") for name, members in BUNDLES.items())
+
+
+def _rigs() -> Iterator[Entry]:
+    from rectbench.calibrations import load_rig, rig_names
+
+    for name in rig_names():
+        rig = load_rig(name)
+        size, baseline_mm = f"{rig.left.width}x{rig.left.height}", 1000 * rig.baseline_m
+        yield Entry(name, f"{rig.left.model}, {size}, baseline {baseline_mm:.0f} mm")
+
+
+def _motions() -> Iterator[Entry]:
+    from rectbench.rigs import MOTIONS
+
+    return (Entry(motion.name, motion.description) for motion in MOTIONS.values())
+
+
+def _poses() -> Iterator[Entry]:
+    from rectbench.pairs.spec import ESTIMATED
+    from rectbench.rigs import POSES
+
+    for name, noise in POSES.items():
+        rotation, direction = f"{noise.rotation_deg:g}°", f"{noise.direction_deg:g}°"
+        yield Entry(name, f"rotation off by {rotation}, baseline by {direction}")
+    yield Entry(ESTIMATED, "found in the images: features, five points, bundle adjustment")

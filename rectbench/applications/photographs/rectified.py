@@ -1,0 +1,124 @@
+"""What was made of photographs: the frame and its costs, how each pair fared, the numbers as files."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from rectbench.applications.choose_method import Choice
+from rectbench.applications.rectification_files import Files
+from rectbench.metrics import RowError
+from rectbench.pairs.finding.names import FilePair, LeftOut
+from rectbench.warps import Rectification
+
+ELSEWHERE_PX = 5.0
+"""Rows farther off than this, source pixels, are no matter of a calibration's accuracy."""
+
+
+@dataclass(frozen=True, eq=False)
+class PairResult:
+    """How one pair fared."""
+
+    pair: FilePair
+    reason: str = ""
+    """Why it was left out; empty where it was rectified."""
+    features: RowError | None = None
+    """Row errors of feature matches that agree with one another."""
+    board: RowError | None = None
+    """Row errors of the corners of a calibration board, the measure to trust."""
+    note: str = ""
+    """The kind of board, or why nothing could be measured."""
+
+    @property
+    def columns(self) -> dict[str, Any]:
+        """The row of this pair in `pairs.csv`."""
+        status = "left out" if self.reason else "ok"
+        files = {"left": str(self.pair.left), "right": str(self.pair.right)}
+        about = {"pair": self.pair.name, **files, "status": status, "reason": self.reason, "note": self.note}
+        return about | _row_columns("features", self.features) | _row_columns("board", self.board)
+
+
+@dataclass(frozen=True, eq=False)
+class RectifiedImages:
+    """What was made of the photographs of a rig."""
+
+    method: str
+    rectification: Rectification
+    costs: Mapping[str, float]
+    """Of the frame, see `frame_costs`."""
+    own_costs: Mapping[str, float] | None
+    """Of the frame that the method makes by itself; None where that is the frame."""
+    choice: Choice | None
+    """How the method was chosen, where it was."""
+    unpaired: tuple[LeftOut, ...]
+    """Images without a partner."""
+    pairs: tuple[PairResult, ...] = ()
+    files: tuple[Path, ...] = ()
+
+    @property
+    def left_out(self) -> tuple[str, ...]:
+        """Why pairs and images were left out, one line each."""
+        reasons = [result.reason for result in self.pairs if result.reason]
+        return (*reasons, *(f"{image.path}: {image.reason}" for image in self.unpaired))
+
+    @property
+    def rows(self) -> dict[str, float]:
+        """Row errors over all measured pairs: `row_error_board_*` and `row_error_features_*`."""
+        rows: dict[str, float] = {}
+        for kind in ("board", "features"):
+            found = [error for result in self.pairs if (error := getattr(result, kind)) is not None]
+            pooled = RowError(
+                np.concatenate([error.rectified_px for error in found] or [np.empty(0)]),
+                np.concatenate([error.source_px for error in found] or [np.empty(0)]),
+            )
+            if np.isfinite(pooled.rectified_px).any():
+                rows |= _row_columns(kind, pooled)
+        return rows
+
+    @property
+    def warning(self) -> str:
+        """That images and calibration do not belong together, where the rows say so; else nothing."""
+        known = [self.rows.get(f"row_error_{kind}_source_median_px") for kind in ("board", "features")]
+        off = next((error for error in known if error is not None), 0.0)  # a board's word goes first
+        if off <= ELSEWHERE_PX:
+            return ""
+        return (
+            f"rows are {off:.0f} source pixels off in the median: these images are not of this "
+            "calibration, or left and right are swapped"
+        )
+
+
+def summary_files(made: RectifiedImages) -> Files:
+    """`metrics.json`, and of several pairs `pairs.csv`."""
+    metrics: dict[str, Any] = {"method": made.method, "frame": dict(made.costs)}
+    if made.own_costs:
+        metrics["frame_of_the_method"] = dict(made.own_costs)
+    if made.choice:
+        metrics["choice"] = {"why": made.choice.why, "methods": made.choice.table.to_dict("records")}
+    metrics |= {"rows": made.rows, "pairs": [result.columns for result in made.pairs]}
+    metrics["left_out"] = list(made.left_out)
+    files = {"metrics.json": (json.dumps(_finite(metrics), indent=1, ensure_ascii=False) + "\n").encode()}
+    if len(made.pairs) > 1:
+        files["pairs.csv"] = pd.DataFrame([r.columns for r in made.pairs]).to_csv(index=False).encode()
+    return files
+
+
+def _finite(value: Any) -> Any:
+    """The same with null for numbers that JSON has not."""
+    if isinstance(value, dict):
+        return {key: _finite(item) for key, item in value.items()}
+    if isinstance(value, list):
+        return [_finite(item) for item in value]
+    return None if isinstance(value, float) and not np.isfinite(value) else value
+
+
+def _row_columns(kind: str, error: RowError | None) -> dict[str, float]:
+    if error is None:
+        return {}
+    return {name.replace("row_error", f"row_error_{kind}"): value for name, value in error.columns().items()}

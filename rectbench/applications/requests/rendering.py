@@ -1,0 +1,52 @@
+"""What the verbs that render take."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Self
+
+from pydantic import model_validator
+
+from rectbench.applications.requests.request import positional, word
+from rectbench.applications.requests.shared import (
+    OUT,
+    ImageWidth,
+    MethodRequest,
+    Seed,
+    SizedRigRequest,
+    Text,
+)
+from rectbench.applications.requests.words import whole_numbers_in
+from rectbench.errors import InvalidInput
+
+
+class StageRequest(SizedRigRequest):
+    """A rig in a scene, and how it is rendered."""
+
+    scene: Text = positional("SCENE", "A scene's name, or a .py or Mitsuba .xml file.")
+    motion: str = word("as-calibrated", "How the right camera stands to the left.")
+    spp: int = word(64, "Samples a pixel, a power of two.")
+    quality: str = word("path", "path or fast.")
+    image_width: ImageWidth | None = word(None, "Scale the rig to this image width, pixels.", "--width")
+
+
+class RenderRequest(StageRequest):
+    """One pair."""
+
+    out: Path = word(Path("rendered"), "Folder for images, truth and rig.", *OUT)
+    seed: Seed = word(0, "Of scene, motion and noise.")
+
+
+class ExportRequest(MethodRequest, StageRequest):
+    """A dataset: a pair a seed, rectified by a method."""
+
+    out: Path = word(Path("dataset"), "The dataset's folder.", *OUT)
+    seeds: list[Seed] = word(
+        [0], "A pair each, such as 0,1,2.", metavar="NUMBERS", parse=whole_numbers_in, has_commas=True
+    )
+
+    @model_validator(mode="after")
+    def _checked(self) -> Self:
+        if not self.seeds:
+            raise InvalidInput("seeds are empty; expected whole numbers from 0 on, a pair each")
+        return self

@@ -1,0 +1,1 @@
+"""What the command line prints, one file a concern: tables for a person to read. Imports what it shows."""

@@ -1,0 +1,51 @@
+"""`rectbench list`: names, a line about each, and options."""
+
+from __future__ import annotations
+
+from typing import Any, Literal, get_args, get_origin
+
+from rich.table import Table
+from rich.text import Text
+
+from rectbench.applications.listing import listed
+from rectbench.cli.printing.screen import console, plain_table
+
+
+def show_names(kind: str, verbose: bool) -> None:
+    """The names of a kind with a line about each; below, the plugins that cannot be loaded."""
+    screen, table, found = console(), plain_table(kind), listed(kind)
+    for entry in found.entries:
+        table.add_row(entry.name, entry.summary)
+        if verbose and hasattr(entry.value, "Options"):
+            _add_options(table, entry.value)
+    screen.print(table)
+    for place, reason in found.broken.items():
+        screen.print(Text(f"  broken: {place}: {reason}", style="red"))
+    screen.print()
+
+
+def _add_options(table: Table, method: Any) -> None:
+    for name, option in method.Options.model_fields.items():
+        limits = [_LIMITS[type(limit).__name__].format(limit) for limit in option.metadata]
+        kind = ", ".join([_kind_text(option.annotation), *limits, f"default {_plain(option.default)}"])
+        text = f"{option.description} ({kind})"
+        table.add_row(f"  --option {method.name}.{name}", text, style="dim")
+    for reference in method.references:
+        table.add_row("", reference, style="dim italic")
+
+
+_LIMITS = {"Gt": "> {0.gt}", "Ge": "≥ {0.ge}", "Lt": "< {0.lt}", "Le": "≤ {0.le}"}
+
+
+def _kind_text(annotation: Any) -> str:
+    """A type as a user writes its values: choices, or number, text, ..."""
+    if get_origin(annotation) is Literal:
+        return " | ".join(map(str, get_args(annotation)))
+    if get_args(annotation):
+        return " or ".join(_kind_text(part) for part in get_args(annotation))
+    names = {float: "number", int: "whole number", str: "text", bool: "true | false", type(None): "nothing"}
+    return names.get(annotation, str(annotation))
+
+
+def _plain(default: Any) -> str:
+    return "none" if default is None else str(default)
