@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 
 import rectbench as rb
-from rectbench.experiments.execution.running import run
+from rectbench.runs.making import run
 from tests.experiments.fakes import small_report, write_method
 
 distributed = pytest.importorskip("distributed", reason="the extra rectbench[dask] is not installed")

@@ -10,11 +10,12 @@ import pytest
 
 import rectbench as rb
 from rectbench.experiments.planning import make_plan
-from rectbench.reporting import write_report
+from rectbench.reporting.report import write_report
 from rectbench.runs.gating import accept, gate
 from rectbench.runs.making import run
 from rectbench.runs.run import read_run
 from rectbench.store.store import STORE_VARIABLE
+from tests.conftest import Shell
 from tests.experiments.fakes import small_report
 
 TALLNESS = '''
@@ -121,10 +122,8 @@ def test_a_wrong_name_is_told_before_anything_runs(tmp_path: Path) -> None:
         make_plan(small_report(metrics=(str(tmp_path / "gone.py"),)))
 
 
-def test_the_metrics_are_listed(capsys: pytest.CaptureFixture[str]) -> None:
-    from rectbench.cli.names import list_
-
-    list_("metrics")
-    listed = capsys.readouterr().out
+def test_the_metrics_are_listed(shell: Shell) -> None:
+    code, listed, _ = shell("list", "metrics")
+    assert code == 0
     assert "row_error_board" in listed
     assert "Together: distortion, distortion_detail" in listed
