@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import Any, Generic, NamedTuple, TypeVar
 
@@ -33,8 +34,6 @@ class Kind(Generic[T]):
         that is meant as a plugin and is broken.
     by_suffix : how a file of another suffix than `.py` is read, such as a scene in Mitsuba's `.xml`: the
         plugin, and the files that shape it.
-    is_keyed : whether keys of results need the plugins' digests; of calibration formats they do not, since
-        the numbers that are read from a file are in the keys themselves.
     """
 
     name: str
@@ -44,7 +43,6 @@ class Kind(Generic[T]):
     described: Callable[[Any], Described[T] | None]
     by_suffix: Mapping[str, Callable[[Path], tuple[Described[T], list[Path]]]] = field(default_factory=dict)
     is_shared: bool = False
-    is_keyed: bool = True
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,6 +54,10 @@ class Plugin(Generic[T]):
     summary: str
     path: Path
     """The file it comes from."""
-    digest: str
-    """SHA-256 of all that shapes it, for keys; empty where its kind is not keyed."""
+    find_digest: Callable[[], str]
     value: T
+
+    @cached_property
+    def digest(self) -> str:
+        """SHA-256 of all that shapes it, for keys; found when first asked for, as not every kind is keyed."""
+        return self.find_digest()

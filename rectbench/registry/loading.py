@@ -140,7 +140,7 @@ def _built_in_digest(module: str, path: Path) -> str:
 
 def _built_in(kind: Kind[T], module: str, path: Path) -> list[Plugin[T]]:
     loaded = importlib.import_module(module)
-    plugins = _plugins_in(kind, loaded, path, _built_in_digest(module, path) if kind.is_keyed else "")
+    plugins = _plugins_in(kind, loaded, path, lambda: _built_in_digest(module, path))
     return plugins if kind.is_shared else _require(kind, plugins)
 
 
@@ -149,7 +149,10 @@ def _announced(kind: Kind[T], point: importlib.metadata.EntryPoint) -> list[Plug
     path = Path(str(sys.modules[point.module].__file__))
     topmost = sys.modules[point.module.partition(".")[0]]
     root = Path(str(topmost.__file__)).parent
-    source = digest([plugin_digest(path, root), point.dist.version if point.dist else None])
+
+    def source() -> str:
+        return digest([plugin_digest(path, root), point.dist.version if point.dist else None])
+
     if isinstance(loaded, ModuleType):
         return _require(kind, _plugins_in(kind, loaded, path, source))
     described = kind.described(loaded)
@@ -159,7 +162,8 @@ def _announced(kind: Kind[T], point: importlib.metadata.EntryPoint) -> list[Plug
 def _from_file(kind: Kind[T], path: Path) -> list[Plugin[T]]:
     if read := kind.by_suffix.get(path.suffix):
         described, files = read(path)
-        return [_plugin(kind, described, path, digest({str(file): file_digest(file) for file in files}))]
+        source = digest({str(file): file_digest(file) for file in files})
+        return [_plugin(kind, described, path, lambda: source)]
     try:
         source = plugin_digest(path)
     except SyntaxError:
@@ -184,7 +188,7 @@ def _load_file(kind: Kind[T], path: Path, source: str) -> list[Plugin[T]]:
     except BaseException:
         del sys.modules[spec.name], sys.modules[folder]
         raise
-    return _require(kind, _plugins_in(kind, module, path, source))
+    return _require(kind, _plugins_in(kind, module, path, lambda: source))
 
 
 @contextmanager
@@ -210,7 +214,7 @@ def _lies_in(module: ModuleType, folder: Path) -> bool:
     return file is not None and folder in Path(file).resolve().parents
 
 
-def _plugins_in(kind: Kind[T], module: ModuleType, path: Path, source: str) -> list[Plugin[T]]:
+def _plugins_in(kind: Kind[T], module: ModuleType, path: Path, source: Callable[[], str]) -> list[Plugin[T]]:
     own = {id(value): value for value in vars(module).values() if _is_own(value, module)}
     return [
         _plugin(kind, described, path, source)
@@ -219,7 +223,7 @@ def _plugins_in(kind: Kind[T], module: ModuleType, path: Path, source: str) -> l
     ]
 
 
-def _plugin(kind: Kind[T], described: Described[T], path: Path, source: str) -> Plugin[T]:
+def _plugin(kind: Kind[T], described: Described[T], path: Path, source: Callable[[], str]) -> Plugin[T]:
     return Plugin(kind, described.name, described.summary, path, source, described.value)
 
 

@@ -69,5 +69,4 @@ FORMATS: Kind[FileFormat] = Kind(
     packages=("rectbench.calibrations.formats",),
     described=_described,
     is_shared=True,
-    is_keyed=False,
 )

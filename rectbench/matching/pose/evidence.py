@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from scipy.spatial import cKDTree
-from scipy.special import gammaln
-from scipy.stats import binom
+from scipy.special import bdtrc, gammaln
 
 from rectbench.errors import PoseNotFound
 from rectbench.matching.pose.epipolar import (
@@ -106,7 +105,7 @@ def refuse_pure_rotation(pose: Pose, matches: RayMatches, limit_px: float) -> No
     if 2 * moved.sum() > len(matches):
         return
     ahead = int((triangulated(pose, matches).ahead & moved).sum())
-    if binom.sf(ahead - 1, moved.sum(), AHEAD_BY_CHANCE) > BELIEVED:
+    if bdtrc(ahead - 1, moved.sum(), AHEAD_BY_CHANCE) > BELIEVED:
         raise PoseNotFound(
             f"a turn alone explains {(~moved).sum()} of {len(matches)} matches; "
             "expected photographs from two places, of things near enough to shift between them"

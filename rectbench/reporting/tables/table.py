@@ -11,7 +11,7 @@ import re
 import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 
 from jinja2 import Environment, PackageLoader, Template
 from pylatexenc.latexencode import RULE_REGEX, UnicodeToLatexConversionRule, UnicodeToLatexEncoder
@@ -227,6 +227,7 @@ _TO_LATEX = UnicodeToLatexEncoder(
 )
 
 
+@lru_cache(maxsize=4096)
 def escape_latex(text: str) -> str:
     r"""Plain text as LaTeX: special characters escaped, powers of ten and symbols in math.
 
