@@ -9,6 +9,7 @@ from pathlib import Path
 from rectbench.errors import InvalidInput, InvalidResult, UnknownName
 from rectbench.plugins.metric import METRICS, Case, Metric, Need
 from rectbench.registry import Plugin, is_path, registry
+from rectbench.store.closure import PACKAGE
 
 BUNDLES: Mapping[str, tuple[str, ...]] = {
     "geometry": (
@@ -55,8 +56,12 @@ def needs_of(asked: Iterable[str | Path]) -> frozenset[Need]:
 
 
 def digests_of(asked: Iterable[str | Path]) -> dict[str, str]:
-    """The digests of these metrics' sources by their names, for the key of a cell."""
-    return {plugin.name: plugin.digest for plugin in metrics_of(asked).values()}
+    """The digests of these metrics' sources by their names, for the key of a cell.
+
+    Without the built-in ones: the key covers what `rectbench.metrics` imports, and these are all of them.
+    """
+    plugins = metrics_of(asked).values()
+    return {plugin.name: plugin.digest for plugin in plugins if not plugin.path.is_relative_to(PACKAGE)}
 
 
 def score(case: Case, asked: Iterable[str | Path]) -> dict[str, float]:
