@@ -15,7 +15,12 @@ Constants = Mapping[str, Any]
 
 
 class Matches(NamedTuple):
-    """Corresponding pixels of the two images."""
+    """Corresponding pixels of the two images.
+
+    >>> left, right = Matches(np.array([[10.0, 20.0]]), np.array([[7.0, 20.0]]))
+    >>> (left - right).tolist()
+    [[3.0, 0.0]]
+    """
 
     left: FloatArray
     """[N, 2]"""
@@ -24,7 +29,11 @@ class Matches(NamedTuple):
 
 
 class Images(NamedTuple):
-    """The two photographs, [height, width] or [height, width, channels]."""
+    """The two photographs, [height, width] or [height, width, channels].
+
+    >>> Images(np.zeros((480, 640)), np.zeros((480, 640))).left.shape
+    (480, 640)
+    """
 
     left: NDArray[np.generic]
     right: NDArray[np.generic]
