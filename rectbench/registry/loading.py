@@ -14,7 +14,6 @@ import inspect
 import sys
 import traceback
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
@@ -22,11 +21,15 @@ from types import ModuleType
 from typing import Any, Generic, TypeVar
 
 from rectbench.errors import InvalidInput, UnknownName
+from rectbench.registry import beside
+from rectbench.registry.beside import PRIVATE, load_beside
 from rectbench.registry.kind import Described, Kind, Plugin
 from rectbench.registry.sources import plugin_digest
 from rectbench.store.keys import code_digest, digest, file_digest
 
 T = TypeVar("T")
+_IMPORTING = {str(beside.__file__), "<frozen importlib._bootstrap>", "<frozen importlib._bootstrap_external>"}
+"""Files of a traceback that lead to a plugin's own line."""
 
 
 @dataclass
@@ -68,7 +71,9 @@ class Registry(Generic[T]):
         """Register what `load` finds at `place`, or why it finds nothing."""
         try:
             plugins = load()
-        except (Exception, SystemExit) as error:  # a plugin may raise anything
+        except BaseException as error:  # a plugin may raise anything
+            if isinstance(error, KeyboardInterrupt):
+                raise
             self.broken[place] = _reason(error)
             return
         for plugin in plugins:
@@ -81,7 +86,9 @@ class Registry(Generic[T]):
             raise InvalidInput(f"there is no file {path}; expected {self.kind.expected} in it")
         try:
             plugins = _from_file(self.kind, path.resolve())
-        except (Exception, SystemExit) as error:  # a plugin may raise anything
+        except BaseException as error:  # a plugin may raise anything
+            if isinstance(error, KeyboardInterrupt):
+                raise
             raise InvalidInput(f"{path} cannot be loaded: {_reason(error)}") from error
         if len(plugins) > 1:
             names = ", ".join(plugin.name for plugin in plugins)
@@ -133,14 +140,13 @@ def _built_in_files(package: str) -> Iterator[tuple[str, Path]]:
                 yield ".".join((package, *names)), path
 
 
-def _built_in_digest(module: str, path: Path) -> str:
-    """One of rectbench's own modules sees more of it than the public names."""
-    return code_digest(module) if module.startswith("rectbench.") else plugin_digest(path)
-
-
 def _built_in(kind: Kind[T], module: str, path: Path) -> list[Plugin[T]]:
     loaded = importlib.import_module(module)
-    plugins = _plugins_in(kind, loaded, path, lambda: _built_in_digest(module, path))
+    if module.startswith("rectbench."):  # sees more than the public names
+        plugins = _plugins_in(kind, loaded, path, lambda: code_digest(module))
+    else:
+        source = plugin_digest(path)
+        plugins = _plugins_in(kind, loaded, path, lambda: source)
     return plugins if kind.is_shared else _require(kind, plugins)
 
 
@@ -148,15 +154,12 @@ def _announced(kind: Kind[T], point: importlib.metadata.EntryPoint) -> list[Plug
     loaded = point.load()
     path = Path(str(sys.modules[point.module].__file__))
     topmost = sys.modules[point.module.partition(".")[0]]
-    root = Path(str(topmost.__file__)).parent
-
-    def source() -> str:
-        return digest([plugin_digest(path, root), point.dist.version if point.dist else None])
-
+    root = Path(topmost.__path__[0]) if hasattr(topmost, "__path__") else path
+    source = digest([plugin_digest(path, root), point.dist.version if point.dist else None])
     if isinstance(loaded, ModuleType):
-        return _require(kind, _plugins_in(kind, loaded, path, source))
+        return _require(kind, _plugins_in(kind, loaded, path, lambda: source))
     described = kind.described(loaded)
-    return _require(kind, [] if described is None else [_plugin(kind, described, path, source)])
+    return _require(kind, [] if described is None else [_plugin(kind, described, path, lambda: source)])
 
 
 def _from_file(kind: Kind[T], path: Path) -> list[Plugin[T]]:
@@ -173,45 +176,11 @@ def _from_file(kind: Kind[T], path: Path) -> list[Plugin[T]]:
 
 @cache
 def _load_file(kind: Kind[T], path: Path, source: str) -> list[Plugin[T]]:
-    folder = f"rectbench_file_{source[:12]}"
-    package = ModuleType(folder)
-    package.__path__ = [str(path.parent)]  # so that `from . import helper` finds the file beside
-    spec = importlib.util.spec_from_file_location(f"{folder}.{path.stem}", path)
-    if spec is None or spec.loader is None:
+    if path.suffix != ".py":
         raise InvalidInput(f"it is no Python file; expected {kind.expected}")
-    module = importlib.util.module_from_spec(spec)
-    # Dataclasses and pydantic look their module up there.
-    sys.modules |= {folder: package, spec.name: module}
-    try:
-        with _beside(path.parent):
-            spec.loader.exec_module(module)
-    except BaseException:
-        del sys.modules[spec.name], sys.modules[folder]
-        raise
+    place = digest([str(path.parent), source])  # another folder's file of the same text has other neighbours
+    module = load_beside(path, f"{PRIVATE}{place[:16]}")
     return _require(kind, _plugins_in(kind, module, path, lambda: source))
-
-
-@contextmanager
-def _beside(folder: Path) -> Iterator[None]:
-    """Let a file import those beside it by their bare names, as if it were run as a script.
-
-    Afterwards these are forgotten by those names: another plugin may have a file of the same name beside it.
-    """
-    before = set(sys.modules)
-    sys.path.insert(0, str(folder))
-    try:
-        yield
-    finally:
-        sys.path.remove(str(folder))
-        for name in set(sys.modules) - before:
-            if "." not in name and _lies_in(sys.modules[name], folder):
-                for loaded in [name, *(other for other in sys.modules if other.startswith(f"{name}."))]:
-                    del sys.modules[loaded]
-
-
-def _lies_in(module: ModuleType, folder: Path) -> bool:
-    file = getattr(module, "__file__", None)
-    return file is not None and folder in Path(file).resolve().parents
 
 
 def _plugins_in(kind: Kind[T], module: ModuleType, path: Path, source: Callable[[], str]) -> list[Plugin[T]]:
@@ -252,7 +221,7 @@ def _reason(error: BaseException) -> str:
         return "; ".join(map(_fault, error.errors(include_url=False)))
     if isinstance(error, InvalidInput | SyntaxError):
         return text if isinstance(error, InvalidInput) else f"SyntaxError: {text}"
-    frames = traceback.extract_tb(error.__traceback__)
+    frames = [f for f in traceback.extract_tb(error.__traceback__) if f.filename not in _IMPORTING]
     where = f" (line {frames[-1].lineno} of {Path(frames[-1].filename).name})" if frames else ""
     return f"{type(error).__name__}: {text}{where}"
 

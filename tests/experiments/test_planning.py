@@ -128,6 +128,8 @@ def test_all_that_shapes_a_cell_shapes_its_key(tmp_path: Path, monkeypatch: pyte
         {"image_width": 97},
         {"options": {"mine": {"scale": 0.5}}},
         {"metrics": ("geometry",)},
+        {"metrics": ("distortion",)},
+        {"metrics": ("distortion", "timing")},
         {"match_count": 999},
         {"match_noise_px": 0.1},
     ]

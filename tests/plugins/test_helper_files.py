@@ -10,7 +10,7 @@ import pytest
 
 import rectbench as rb
 from rectbench.plugins.rectifier import METHODS, pose_problem
-from rectbench.registry import Plugin, forget_plugins, registry
+from rectbench.registry import Plugin, forget_plugins, registry, sources
 from tests.rigs_for_tests import rig
 
 METHOD = """
@@ -124,3 +124,70 @@ def test_editing_a_submodule_of_an_installed_package_gives_another_digest(
     assert announced().digest == first.digest
     (package / "optics.py").write_text("FOCAL = 90.0  # of the catalogue\n")
     assert announced().digest != first.digest
+
+
+LATE = """def late(self):
+        import helper
+        from helper import FOCAL
+        assert helper.FOCAL == FOCAL
+        return FOCAL
+
+    def fit(self, problem, options):"""
+
+
+def test_a_helper_may_be_imported_within_a_function(tmp_path: Path) -> None:
+    path = write(tmp_path, "", "70.0", helper="FOCAL = 3.0\n")
+    path.write_text(path.read_text().replace("def fit(self, problem, options):", LATE))
+    assert loaded(path).value.late() == 3.0  # type: ignore[attr-defined]
+
+
+def test_folders_of_helpers_of_one_name_do_not_meet(tmp_path: Path) -> None:
+    for folder, focal in (("a", 50.0), ("b", 60.0)):
+        (tmp_path / folder / "parts").mkdir(parents=True)
+        (tmp_path / folder / "parts" / "focals.py").write_text(f"FOCAL = {focal}\n")
+        path = write(tmp_path / folder, "from parts.focals import FOCAL", "FOCAL", f"method-{folder}")
+        assert focal_of(loaded(path)) == focal
+    assert "parts" not in sys.modules
+
+
+def test_pythons_own_modules_and_libraries_are_nobodys_helpers(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    site = tmp_path / ".venv" / "site-packages"
+    site.mkdir(parents=True)
+    (site / "a_library.py").write_text("X = 1\n")
+    monkeypatch.syspath_prepend(site)
+    path = write(tmp_path, "import types, a_library", "70.0", types="raise RuntimeError('not this one')\n")
+    before = loaded(path).digest
+    assert "a_library" in sys.modules
+    (tmp_path / "types.py").write_text("raise RuntimeError('nor this')\n")
+    assert loaded(path).digest == before
+
+
+@pytest.mark.parametrize(
+    "line", ["rb.best_method", "from rectbench import *", "r = rb", "import rectbench_methods.hartley"]
+)
+def test_what_may_use_any_part_of_rectbench_depends_on_all_of_it(tmp_path: Path, line: str) -> None:
+    for name, text in (("mine", line), ("all", "rb.rectify")):
+        (tmp_path / f"{name}.py").write_text(f"import rectbench as rb\n{text}\n")
+    mine, everything = (sources._public_names(tmp_path / f"{name}.py") for name in ("mine", "all"))
+    assert sources._digests_of(mine) == sources._digests_of(everything)
+
+
+def test_an_installed_package_of_one_file_depends_on_no_neighbour(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = write(tmp_path, "import neighbour", "neighbour.FOCAL", neighbour="FOCAL = 70.0\n")
+    alone = sources.plugin_digest(path, path)
+    (tmp_path / "neighbour.py").write_text("FOCAL = 60.0\n")
+    assert sources.plugin_digest(path, path) == alone
+
+
+def test_the_init_files_of_a_package_are_in_its_key(tmp_path: Path) -> None:
+    package = tmp_path / "acme" / "methods"
+    path = write(package, "from .. import FOCAL", "FOCAL")
+    for folder in (package, package.parent):
+        (folder / "__init__.py").write_text("FOCAL = 70.0\n")
+    before = sources.plugin_digest(path, package.parent)
+    (package.parent / "__init__.py").write_text("FOCAL = 60.0\n")
+    assert sources.plugin_digest(path, package.parent) != before

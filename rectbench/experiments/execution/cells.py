@@ -65,19 +65,20 @@ def stored_outcome(task: CellTask, pair: Pair) -> Outcome | None:
 def run_cell(task: CellTask, store_root: Path) -> Outcome:
     """Run a cell and store how it ended; whatever a plugin raises becomes a status."""
     pair = DESK.pair(task.pair, Store(store_root))
+    inputs = cell_inputs(task, pair)  # of the sources that run now: a file may be edited meanwhile
     try:
         outcome = _measured(task, pair)
     except BaseException as error:  # a plugin may raise anything, SystemExit and KeyboardInterrupt too
         outcome = outcome_of(error)
-    keep(task, pair, outcome)
+    keep(pair.store, inputs, outcome)
     give_memory_back()
     return outcome
 
 
-def keep(task: CellTask, pair: Pair, outcome: Outcome) -> None:
-    """Store how a cell ended, if it would end so again."""
+def keep(store: Store, inputs: Inputs, outcome: Outcome) -> None:
+    """Store how a cell of these inputs ended, if it would end so again."""
     if outcome.status in LASTING:
-        pair.store.write_text(CELLS, cell_inputs(task, pair), ROW, json.dumps(asdict(outcome)))
+        store.write_text(CELLS, inputs, ROW, json.dumps(asdict(outcome)))
 
 
 def run_pair(spec: RenderedSpec, store_root: Path) -> Outcome:

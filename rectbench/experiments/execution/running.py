@@ -164,14 +164,15 @@ class _Runner:
         missing = [index for index, outcome in enumerate(found) if outcome is None]
         report = self.plan.report
         tasks = [self.plan.tasks[index] for index in missing]
+        inputs = [cell_inputs(task, self._pair(task)) for task in tasks]
         ended: Iterable[tuple[int, Outcome]] = run_on_cluster(
             address,
-            [(task, digest(cell_inputs(task, self._pair(task)))) for task in tasks],
+            [(task, digest(shaping)) for task, shaping in zip(tasks, inputs, strict=True)],
             timeout_s=report.timeout_s + report.render_timeout_s,  # the first cell of a pair renders it
             limits=self.limits,
         )
         with self.progress.stage("cells", len(missing)) as advance:
             for position, outcome in ended:
                 found[missing[position]] = outcome
-                keep(tasks[position], self._pair(tasks[position]), outcome)
+                keep(self.store, inputs[position], outcome)
                 advance()
