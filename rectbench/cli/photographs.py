@@ -20,7 +20,7 @@ def rectify(request: RectifyRequest) -> int:
     Exit code 3 where some of several pairs had to be left out.
     """
     from rectbench.applications.photographs.rectify import rectify_photographs
-    from rectbench.cli.printing.rectified import show_rectified
+    from rectbench.cli.printing.photographs import show_rectified
 
     made = rectify_photographs(request)
     show_rectified(made)
@@ -36,7 +36,7 @@ def pose(request: PoseRequest) -> int:
     """
     from rectbench.applications.calibrated import calibrated_pair
     from rectbench.applications.estimate_pose import estimate_rig_pose
-    from rectbench.cli.printing.pose import show_pose
+    from rectbench.cli.printing.photographs import show_pose
 
     rig, images = calibrated_pair(request)
     estimate = estimate_rig_pose(images, rig, request)
@@ -65,7 +65,7 @@ def uncertainty(request: UncertaintyRequest) -> int:
     which what is said about lenses and baseline adds.
     """
     from rectbench.applications.uncertainty import propagate_uncertainty
-    from rectbench.cli.printing.uncertainty import show_uncertainty
+    from rectbench.cli.printing.photographs import show_uncertainty
 
     propagated = propagate_uncertainty(request)
     show_uncertainty(propagated.found, propagated.covariance)

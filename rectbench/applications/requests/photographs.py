@@ -94,7 +94,7 @@ class RectifyRequest(FramingRequest, OptionsRequest, RigRequest):
         has_commas=True,
     )
     measured_pairs: int = word(
-        5, "Measure the rows of so many pairs, spread over all.", "--measure", metavar="PAIRS", ge=0
+        5, "Measure the rows of so many pairs, spread over all.", "--measure", metavar="PAIRS", least=0
     )
 
     @model_validator(mode="after")
@@ -153,13 +153,15 @@ class UncertaintyRequest(SeededMethodRequest, SizedRigRequest):
         "OpenCV's standard deviations, a file a camera, left first.",
         metavar="FILE",
     )
-    rotation_deg: float | None = word(None, "σ of the right camera's rotation, its size over all axes.", ge=0)
-    direction_deg: float | None = word(
-        None, "σ of the baseline's direction in the left camera's frame.", ge=0
+    rotation_deg: float | None = word(
+        None, "σ of the right camera's rotation, its size over all axes.", least=0
     )
-    baseline_mm: float | None = word(None, "σ of the baseline's length.", ge=0)
-    focal_px: float | None = word(None, "σ of each camera's fx; fy moves along.", ge=0)
-    centre_px: float | None = word(None, "σ of each camera's cx and cy.", ge=0)
+    direction_deg: float | None = word(
+        None, "σ of the baseline's direction in the left camera's frame.", least=0
+    )
+    baseline_mm: float | None = word(None, "σ of the baseline's length.", least=0)
+    focal_px: float | None = word(None, "σ of each camera's fx; fy moves along.", least=0)
+    centre_px: float | None = word(None, "σ of each camera's cx and cy.", least=0)
     out: Path = word(Path("uncertainty"), "Folder for what is made.", *OUT)
     depth_m: list[float] | None = word(
         None,
@@ -168,7 +170,7 @@ class UncertaintyRequest(SeededMethodRequest, SizedRigRequest):
         parse=distances_in,
         has_commas=True,
     )
-    matching_px: float = word(0.25, "σ of a match's disparity, in rectified pixels.", ge=0)
+    matching_px: float = word(0.25, "σ of a match's disparity, in rectified pixels.", least=0)
 
     @model_validator(mode="after")
     def _checked(self) -> Self:
@@ -179,14 +181,11 @@ class UncertaintyRequest(SeededMethodRequest, SizedRigRequest):
     @property
     def sigmas(self) -> dict[str, float]:
         """The stated sizes by the names that `RigCovariance.from_sigmas` has for them."""
-        sizes = {
-            "rotation_deg": self.rotation_deg,
-            "direction_deg": self.direction_deg,
-            "baseline_m": None if self.baseline_mm is None else self.baseline_mm / 1000,
-            "focal_px": self.focal_px,
-            "centre_px": self.centre_px,
-        }
-        return {name: sigma for name, sigma in sizes.items() if sigma is not None}
+        names = ("rotation_deg", "direction_deg", "baseline_mm", "focal_px", "centre_px")
+        given = {name: sigma for name in names if (sigma := getattr(self, name)) is not None}
+        if "baseline_mm" in given:
+            given["baseline_m"] = given.pop("baseline_mm") / 1000
+        return given
 
 
 class ConvertRequest(SizedRigRequest):

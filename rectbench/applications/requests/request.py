@@ -19,6 +19,7 @@ class Word:
     names: tuple[str, ...] = ()
     """Of an option; as the field is called where left out."""
     metavar: str | None = None
+    least: float | None = None
     is_positional: bool = False
     has_commas: bool = False
     """Whether one word may hold several values, separated by commas."""
@@ -30,24 +31,19 @@ def word(
     default: Any,
     text: str,
     *names: str,
-    metavar: str | None = None,
     parse: Callable[..., Any] | None = None,
-    has_commas: bool = False,
-    takes_rest: bool = False,
-    **limits: Any,
+    least: Any = None,
+    **how: Any,
 ) -> Any:
-    """A field with what it is, its `Word`, what reads its texts, and pydantic's limits (`ge`, ...)."""
-    field = Field(default, description=text, **limits)
-    field.metadata.append(Word(names, metavar, has_commas=has_commas, takes_rest=takes_rest))
-    field.metadata.extend([] if parse is None else [BeforeValidator(parse)])
+    """A field with what it is, what reads its texts, the least number, and what else its `Word` says."""
+    field = Field(default, description=text, ge=least)
+    field.metadata += [Word(names, least=least, **how), *([BeforeValidator(parse)] if parse else [])]
     return field
 
 
 def positional(metavar: str, text: str, default: Any = ...) -> Any:
     """A field that the command line knows by its place."""
-    field = Field(default, description=text)
-    field.metadata.append(Word(metavar=metavar, is_positional=True))
-    return field
+    return word(default, text, metavar=metavar, is_positional=True)
 
 
 class Request(BaseModel):

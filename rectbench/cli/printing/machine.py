@@ -1,14 +1,19 @@
-"""`rectbench list`: names, a line about each, and options."""
+"""Names and options of what there is, a plugin's checks, and what the doctor found, as tables."""
 
 from __future__ import annotations
 
-from typing import Any, Literal, get_args, get_origin
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any, Literal, get_args, get_origin
 
 from rich.table import Table
 from rich.text import Text
 
 from rectbench.applications.listing import listed
 from rectbench.cli.printing.screen import console, plain_table
+
+if TYPE_CHECKING:
+    from rectbench.applications.check_method import CheckResult
+    from rectbench.applications.doctor import Finding
 
 
 def show_names(kind: str, verbose: bool) -> None:
@@ -49,3 +54,30 @@ def _kind_text(annotation: Any) -> str:
 
 def _plain(default: Any) -> str:
     return "none" if default is None else str(default)
+
+
+def show_checks(method: str, findings: Iterable[CheckResult]) -> int:
+    """The conformance table; returns how many checks failed."""
+    screen, table, failed = console(), plain_table("rig", "check", "result", "found"), 0
+    styles = {"passed": "green", "failed": "bold red", "unsupported": "yellow"}
+    for finding in findings:
+        failed += finding.result == "failed"
+        result = Text(finding.result, style=styles[finding.result])
+        table.add_row(finding.rig, finding.check, result, Text(finding.detail))
+    screen.print(table)
+    screen.print(f"{method}: {failed} checks failed" if failed else f"{method}: all checks passed")
+    return failed
+
+
+def show_examination(findings: Iterable[Finding]) -> bool:
+    """The doctor's table; returns whether nothing that is needed is missing."""
+    screen, table, well = console(), plain_table("", "what", "found"), True
+    for finding in findings:
+        mark = {True: Text("ok", style="green"), False: Text("MISSING", style="bold red"), None: Text("-")}[
+            finding.ok
+        ]
+        table.add_row(mark, finding.name, Text(finding.text))
+        well = well and finding.ok is not False
+    screen.print(table)
+    screen.print("rectbench can run here" if well else "rectbench cannot run here")
+    return well
