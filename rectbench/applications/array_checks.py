@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from rectbench.errors import InvalidInput
 from rectbench.images.stereo_pair import StereoPair
@@ -52,18 +52,14 @@ def _held(given: object) -> str:
 
 def checked_images(images: StereoPair | Sequence[ArrayLike], rig: Rig) -> Images:
     """Two images of their cameras' sizes."""
-    given: list[Any] = []
-    if hasattr(images, "left") and hasattr(images, "right"):
-        given = [images.left, images.right]
-    elif isinstance(images, Sequence):
-        given = list(images)
-    if len(given) != 2:
-        raise InvalidInput(f"images {_held(images)}; expected (left, right)")
-    arrays: list[NDArray[np.generic]] = [np.asarray(image) for image in given]
+    both: Any = (images.left, images.right) if isinstance(images, StereoPair) else images
+    if not isinstance(both, Sequence) or len(both) != 2:
+        raise InvalidInput(f"images {_held(both)}; expected (left, right)")
+    arrays = Images(*map(np.asarray, both))
     for side, image in zip(("left", "right"), arrays, strict=True):
         camera = getattr(rig, side)
         if image.ndim not in (2, 3) or image.shape[:2] != (camera.height, camera.width):
             size = "x".join(map(str, image.shape[1::-1]))
             expected = f"{camera.width}x{camera.height}, the size of rig {rig.name}'s camera"
             raise InvalidInput(f"the {side} image is {size} px; expected {expected}")
-    return Images(*arrays)
+    return arrays

@@ -65,7 +65,8 @@ def check_method(plugin: Plugin[Rectifier]) -> Iterator[CheckResult]:
         supported = True
         yield CheckResult(name, "fit", "passed", f"{rectification.size[0]}x{rectification.size[1]} px")
         for title, check in _CHECKS.items():
-            yield _found(name, title, check, plugin, problem, rectification)
+            passed, detail = _found(check, plugin, problem, rectification)
+            yield CheckResult(name, title, "passed" if passed else "failed", detail)
     if not supported:
         yield CheckResult("all", "fit", "failed", "the method serves none of the rigs")
 
@@ -74,23 +75,24 @@ Check = Callable[[Plugin[Rectifier], Problem, Rectification], tuple[bool, str]]
 
 
 def _found(
-    rig: str, title: str, check: Check, plugin: Plugin[Rectifier], problem: Problem, rect: Rectification
-) -> CheckResult:
+    check: Check, plugin: Plugin[Rectifier], problem: Problem, rect: Rectification
+) -> tuple[bool, str]:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", RuntimeWarning)  # NaN is what stands for "no pixel here"
-            passed, detail = check(plugin, problem, rect)
+            return check(plugin, problem, rect)
     except Exception as error:  # a plugin's own warp may raise anything
-        passed, detail = False, outcome_of(error).reason
-    return CheckResult(rig, title, "passed" if passed else "failed", detail)
+        return False, outcome_of(error).reason
 
 
 def _described(plugin: Plugin[Rectifier]) -> CheckResult:
-    documented = all(field.description for field in plugin.value.Options.model_fields.values())
-    detail = plugin.summary or "the class has no docstring; expected one line that says what it is"
-    if not documented:
-        detail = "an option has no description"
-    return CheckResult("-", "described", "passed" if plugin.summary and documented else "failed", detail)
+    if not plugin.summary:
+        lack = "the class has no docstring; expected one line that says what it is"
+    elif not all(field.description for field in plugin.value.Options.model_fields.values()):
+        lack = "an option has no description"
+    else:
+        return CheckResult("-", "described", "passed", plugin.summary)
+    return CheckResult("-", "described", "failed", lack)
 
 
 def _sides(problem: Problem, rect: Rectification) -> tuple[tuple[str, Warp, FloatArray], ...]:
@@ -131,12 +133,9 @@ def _jacobian(plugin: Plugin[Rectifier], problem: Problem, rect: Rectification) 
         exact = warp.jacobian(pixels)
         if exact.shape != (len(pixels), 2, 2):
             return False, f"{side}: shape {exact.shape}; expected {(len(pixels), 2, 2)}"
-        columns = []
-        for axis in range(2):
-            step = np.zeros(2)
-            step[axis] = STEP_PX
-            columns.append((warp.forward(pixels + step) - warp.forward(pixels - step)) / (2 * STEP_PX))
-        numeric = np.stack(columns, axis=-1)
+        steps = STEP_PX * np.eye(2)
+        moved = [warp.forward(pixels + step) - warp.forward(pixels - step) for step in steps]
+        numeric = np.stack(moved, axis=-1) / (2 * STEP_PX)
         inner = np.isfinite(numeric).all(axis=(1, 2))
         if not np.isfinite(exact[inner]).all():
             return False, f"{side}: NaN where the warp has values"

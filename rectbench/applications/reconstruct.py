@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from rectbench.applications.calibrated import calibrated_pair
-from rectbench.applications.rectify_rig import rectify_rig
+from rectbench.applications.one_rig import calibrated_pair, rectify_rig
 from rectbench.applications.requests.photographs import ReconstructRequest
 from rectbench.matching import reconstruct
 from rectbench.matching.dense.matchers import matcher_named

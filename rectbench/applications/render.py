@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rectbench.applications.calibrated import rig_of
+from rectbench.applications.one_rig import rig_of
 from rectbench.applications.requests.rendering import RenderRequest
 from rectbench.pairs.rendering import placed, render_seed
 from rectbench.plugins.scene import SCENES

@@ -34,8 +34,7 @@ def pose(request: PoseRequest) -> int:
     The calibration gives the two lenses and the length of the baseline; its own pose is compared with
     the estimate.
     """
-    from rectbench.applications.calibrated import calibrated_pair
-    from rectbench.applications.estimate_pose import estimate_rig_pose
+    from rectbench.applications.one_rig import calibrated_pair, estimate_rig_pose
     from rectbench.cli.printing.photographs import show_pose
 
     rig, images = calibrated_pair(request)
@@ -77,7 +76,7 @@ def uncertainty(request: UncertaintyRequest) -> int:
 @verb(ConvertRequest)
 def convert(request: ConvertRequest) -> int:
     """Write a calibration in another format, exactly, or tell why that format cannot hold it."""
-    from rectbench.applications.calibrated import rig_of
+    from rectbench.applications.one_rig import rig_of
 
     for file in rig_of(request).save(request.out, request.to):
         print(file)

@@ -15,7 +15,6 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
-from rectbench.applications.calibrated import rig_of
 from rectbench.applications.export.pair_files import (
     calibration_files,
     image_files,
@@ -24,6 +23,7 @@ from rectbench.applications.export.pair_files import (
     truth_files,
 )
 from rectbench.applications.export.readme import readme_text
+from rectbench.applications.one_rig import rig_of
 from rectbench.applications.render import scene_source
 from rectbench.applications.requests.rendering import ExportRequest
 from rectbench.errors import InvalidInput

@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rectbench.applications.calibrated import rig_of
 from rectbench.applications.choose_method import Choice, best_method, uncalibrated_methods
+from rectbench.applications.one_rig import rig_of
 from rectbench.applications.photographs.own_matches import OwnMatches
 from rectbench.applications.photographs.rectified import PairResult, RectifiedImages, summary_files
 from rectbench.applications.rectification_files import (
