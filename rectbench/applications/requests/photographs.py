@@ -45,11 +45,7 @@ class FramingRequest(Request):
         parse=crop_in,
     )
     fov_deg: tuple[float, float] | None = word(
-        None,
-        "Show a field of view, across and down, degrees.",
-        "--fov",
-        metavar="DEGxDEG",
-        parse=angles_in,
+        None, "Show a field of view, across and down, degrees.", "--fov", metavar="DEGxDEG", parse=angles_in
     )
     coverage: float | None = word(None, "Show this share of the source pixels, up to 1.", metavar="SHARE")
     size: tuple[int, int] | None = word(

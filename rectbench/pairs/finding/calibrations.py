@@ -67,12 +67,7 @@ def stated_calibrations(root: Path, manifest: Manifest, pairs: Sequence[FilePair
     for name, rig in manifest.rigs.items():
         files = tuple(place_of(root, file) for file in rig.files)
         one = Calibration(
-            name,
-            files,
-            home_of(files),
-            unit=rig.unit,
-            max_angle_deg=rig.max_angle_deg,
-            cameras=rig.cameras,
+            name, files, home_of(files), unit=rig.unit, max_angle_deg=rig.max_angle_deg, cameras=rig.cameras
         )
         stated.append(_completed(one, pairs))
     return stated
