@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rectbench.errors import InvalidInput
+from rectbench.images.reading import encoded
 from rectbench.rigs.rig import Rig
 
 Image = NDArray[np.uint8]
@@ -56,7 +57,7 @@ class StereoPair:
         folder = Path(folder)
         folder.mkdir(parents=True, exist_ok=True)
         for side in ("left", "right"):
-            cv2.imwrite(str(folder / f"{side}.png"), cv2.cvtColor(getattr(self, side), cv2.COLOR_RGB2BGR))
+            (folder / f"{side}.png").write_bytes(encoded(getattr(self, side)))
 
     @classmethod
     def load(cls, folder: str | Path, rig: Rig | None = None) -> StereoPair:

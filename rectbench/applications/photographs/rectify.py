@@ -14,8 +14,12 @@ from numpy.typing import NDArray
 
 from rectbench.applications.choose_method import Choice, best_method, uncalibrated_methods
 from rectbench.applications.one_rig import rig_of
-from rectbench.applications.photographs.own_matches import OwnMatches
-from rectbench.applications.photographs.rectified import PairResult, RectifiedImages, summary_files
+from rectbench.applications.photographs.rectified import (
+    OwnMatches,
+    PairResult,
+    RectifiedImages,
+    summary_files,
+)
 from rectbench.applications.rectification_files import (
     SIDES,
     SUFFIXES,
@@ -96,10 +100,10 @@ def rectify_photographs(request: RectifyRequest, progress: bool | None = None) -
             else:
                 stem = f"{{side}}/{pair.name}" if len(pairs) > 1 else "{side}"
                 files += _written(_image_files(both, resamplers, stem), request.out)
-                own_matches = known if pair is readable else OwnMatches()
+                shown = known if pair is readable else OwnMatches()
                 if place in measured and pair is not readable:
-                    own_matches = OwnMatches.of(both, rig, request.seed)
-                results.append(own_matches.measured(pair, rect))
+                    shown = OwnMatches.of(both, rig, request.seed)
+                results.append(shown.measured(pair, rect))
             advance()
     made = replace(made, pairs=tuple(results))
     return replace(made, files=(*files, *_written(summary_files(made), request.out)))
@@ -137,23 +141,17 @@ def _rectification(
 ) -> tuple[Choice | None, Rectification | None, Rectification]:
     """How it was chosen, if it was; the method's own frame, if it is another; and the one that is wanted."""
     without_calibration = request.rig is None
+    given: dict[str, Any] = {"images": images, "matches": matches, "seed": request.seed}
     if request.method == BEST:
-        choice = best_method(
-            rig,
-            framing=framing,
-            images=images,
-            matches=matches,
-            trusted=known.best,
-            methods=uncalibrated_methods() if without_calibration else None,
-            seed=request.seed,
-        )
+        methods = uncalibrated_methods() if without_calibration else None
+        choice = best_method(rig, framing=framing, trusted=known.best, methods=methods, **given)
         return choice, None, choice.rectification
     plugin = registry(METHODS).get(request.method_name)
     if without_calibration and "pose" in plugin.value.needs:
         instead = " or ".join(uncalibrated_methods())
         raise InvalidInput(f"{plugin.name} needs a calibrated rig; expected one, or the method {instead}")
     options = checked_options(plugin, request.options)
-    own = fit(plugin, pose_problem(rig, images=images, matches=matches, seed=request.seed), options)
+    own = fit(plugin, pose_problem(rig, **given), options)
     rect = framed(own, framing)
     return None, None if rect is own else own, rect
 
@@ -183,30 +181,25 @@ def _first_readable(pairs: Sequence[FilePair], rig: Rig | None = None) -> tuple[
         except InvalidInput as error:
             reasons.append(str(error))
     more = f"; and {len(reasons) - 1} more pairs cannot be used" if len(reasons) > 1 else ""
-    raise InvalidInput(
-        f"{reasons[0]}{more}" if reasons else "there are no image pairs; expected at least one"
-    )
+    raise InvalidInput(f"{reasons[0]}{more}")
 
 
 def _images_of(pair: FilePair, rig: Rig | None) -> Images:
     images = read_images(pair.left, pair.right)
-    cameras = () if rig is None else (rig.left, rig.right)
-    for path, image, camera in zip((pair.left, pair.right), images, cameras, strict=False):
+    for path, image, camera in zip(pair.files, images, (rig.left, rig.right) if rig else (), strict=False):
         if image.shape[1::-1] != camera.size:
-            size = "x".join(map(str, image.shape[1::-1]))
-            expected = f"{camera.width}x{camera.height}, the size of its camera"
-            raise InvalidInput(f"{path}: is {size} px; expected {expected}")
+            (width, height), expected = image.shape[1::-1], f"{camera.width}x{camera.height}"
+            raise InvalidInput(f"{path}: is {width}x{height} px; expected {expected}, the size of its camera")
     return images
 
 
 def _averaging(resamplers: Sequence[Resampler]) -> dict[str, float]:
     """Of the rectified pixels, the share that averages several source pixels; and the longest footprint."""
-    footprints = [resampler.footprints for resampler in resamplers if resampler.footprints]
-    if not footprints:
+    found = [resampler.footprints for resampler in resamplers if resampler.footprints]
+    if not found:
         return {}
-    shares = [footprint.shrunk_share for footprint in footprints]
-    longest_px = max(footprint.largest_px for footprint in footprints)
-    return {"averaged_share": float(np.mean(shares)), "longest_footprint_px": longest_px}
+    share = float(np.mean([footprints.shrunk_share for footprints in found]))
+    return {"averaged_share": share, "longest_footprint_px": max(one.largest_px for one in found)}
 
 
 def _resampled(images: Images, resamplers: Sequence[Resampler]) -> list[Image]:
@@ -226,7 +219,7 @@ def _refuse_overwriting(pairs: Sequence[FilePair], out: Path) -> None:
     """Raise InvalidInput where an image would be written over a photograph."""
     names = [f"{side}/{pair.name}" for pair in pairs for side in SIDES] if len(pairs) > 1 else SIDES
     written = {(out / (name + suffix)).resolve() for name in names for suffix in SUFFIXES}
-    for photograph in (path for pair in pairs for path in (pair.left, pair.right)):
+    for photograph in (path for pair in pairs for path in pair.files):
         if photograph.resolve() in written:
             raise InvalidInput(f"{photograph} would be overwritten; expected another folder than {out}")
 
