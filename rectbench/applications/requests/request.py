@@ -28,22 +28,18 @@ class Word:
 
 
 def word(
-    default: Any,
-    text: str,
-    *names: str,
-    parse: Callable[..., Any] | None = None,
-    least: Any = None,
-    **how: Any,
+    text: str, *names: str, default: Any = None, parse: Callable[..., Any] | None = None, **how: Any
 ) -> Any:
-    """A field with what it is, what reads its texts, the least number, and what else its `Word` says."""
-    field = Field(default, description=text, ge=least)
-    field.metadata += [Word(names, least=least, **how), *([BeforeValidator(parse)] if parse else [])]
+    """A field with what it is, its default, what reads its texts, and what else its `Word` says."""
+    word = Word(names, **how)
+    field = Field(default, description=text, ge=word.least)
+    field.metadata += [word] if parse is None else [word, BeforeValidator(parse)]
     return field
 
 
 def positional(metavar: str, text: str, default: Any = ...) -> Any:
     """A field that the command line knows by its place."""
-    return word(default, text, metavar=metavar, is_positional=True)
+    return word(text, default=default, metavar=metavar, is_positional=True)
 
 
 class Request(BaseModel):

@@ -27,29 +27,29 @@ Jobs = Annotated[int, number(Integral, "a whole number from 1 on", lambda n: n >
 
 
 def _names(text: str) -> Any:
-    return word(None, text, metavar="NAMES", parse=listed, has_commas=True)
+    return word(text, metavar="NAMES", parse=listed, has_commas=True)
 
 
 class RunRequest(Request):
     """A report to be run, and what of it."""
 
     report: Any = positional("REPORT", "A report's name, or the path of its file.")
-    out: Path | None = word(None, "The run's folder; runs/REPORT by default.")
+    out: Path | None = word("The run's folder; runs/REPORT by default.")
     methods: list[Text] | None = _names("Run these in the place of the report's own, +NAME beside them.")
     scenes: list[Text] | None = _names("Likewise.")
     rigs: list[Text] | None = _names("Likewise.")
     seeds: list[Any] | None = word(
-        None, "Likewise, such as 0,1,2.", metavar="NUMBERS", parse=whole_numbers_in, has_commas=True
+        "Likewise, such as 0,1,2.", metavar="NUMBERS", parse=whole_numbers_in, has_commas=True
     )
-    data: Path | None = word(None, "Photographs, for a report that takes them.", metavar="FOLDER")
-    jobs: Jobs | None = word(None, "Worker processes; one a core by default.")
-    dask: str | None = word(None, "Run on this dask scheduler's cluster.", metavar="ADDRESS")
-    fresh: StrictBool = word(False, "Make again what the store has of this run.")
-    config: Path | None = word(None, "TOML with [run] and [methods.NAME]; the command line wins.")
+    data: Path | None = word("Photographs, for a report that takes them.", metavar="FOLDER")
+    jobs: Jobs | None = word("Worker processes; one a core by default.")
+    dask: str | None = word("Run on this dask scheduler's cluster.", metavar="ADDRESS")
+    fresh: StrictBool = word("Make again what the store has of this run.", default=False)
+    config: Path | None = word("TOML with [run] and [methods.NAME]; the command line wins.")
     options: OptionSets = word(
-        {},
         "An option of a method; repeatable.",
         "--option",
+        default={},
         metavar="METHOD.NAME=VALUE",
         parse=option_sets_in,
     )

@@ -26,17 +26,12 @@ CALIBRATION = "The rig's calibration file or folder, or a rig's name; repeatable
 class RigRequest(Request):
     """Whose calibration: the same words in every verb that takes one."""
 
-    rig: Any = word(..., CALIBRATION, metavar="CALIB", takes_rest=True)
+    rig: Any = word(CALIBRATION, default=..., metavar="CALIB", takes_rest=True)
     """A `Rig`, or what `load_rig` takes."""
-    max_angle_deg: float | None = word(None, "The image circle: the lenses show nothing beyond this angle.")
-    unit: str | None = word(
-        None, "What the calibration's translations are in, if not metres: mm, cm, in or ft."
-    )
+    max_angle_deg: float | None = word("The image circle: the lenses show nothing beyond this angle.")
+    unit: str | None = word("What the calibration's translations are in, if not metres: mm, cm, in or ft.")
     cameras: Any = word(
-        None,
-        "Two cameras of a calibration that holds more, by its names.",
-        metavar="LEFT,RIGHT",
-        has_commas=True,
+        "Two cameras of a calibration that holds more, by its names.", metavar="LEFT,RIGHT", has_commas=True
     )
 
 
@@ -44,7 +39,7 @@ class SizedRigRequest(RigRequest):
     """A rig without images that would tell their size."""
 
     size: tuple[int, int] | None = word(
-        None, "The images' size, where the calibration does not tell.", metavar="WxH", parse=size_in
+        "The images' size, where the calibration does not tell.", metavar="WxH", parse=size_in
     )
 
 
@@ -52,17 +47,17 @@ class OptionsRequest(Request):
     """How a method is set."""
 
     options: dict[str, Any] = word(
-        {}, "An option of the method; repeatable.", "--option", metavar="NAME=VALUE", parse=options_in
+        "An option of the method; repeatable.", "--option", default={}, metavar="NAME=VALUE", parse=options_in
     )
 
 
 class MethodRequest(OptionsRequest):
     """Which method, and how it is set."""
 
-    method: Text = word(DEFAULT_METHOD, "A method's name, or a file.", *METHOD)
+    method: Text = word("A method's name, or a file.", *METHOD, default=DEFAULT_METHOD)
 
 
 class SeededMethodRequest(MethodRequest):
     """The same where one seed is enough."""
 
-    seed: Seed = word(0, METHOD_SEED)
+    seed: Seed = word(METHOD_SEED, default=0)
