@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rectbench.errors import InvalidInput
-from rectbench.images.stereo_pair import StereoPair
+from rectbench.images.stereo_pair import StereoPair, check_size
 from rectbench.rigs import Rig
 from rectbench.types import FloatArray, Images, Matches
 
@@ -57,9 +57,5 @@ def checked_images(images: StereoPair | Sequence[ArrayLike], rig: Rig) -> Images
         raise InvalidInput(f"images {_held(both)}; expected (left, right)")
     arrays = Images(*map(np.asarray, both))
     for side, image in zip(("left", "right"), arrays, strict=True):
-        camera = getattr(rig, side)
-        if image.ndim not in (2, 3) or image.shape[:2] != (camera.height, camera.width):
-            size = "x".join(map(str, image.shape[1::-1]))
-            expected = f"{camera.width}x{camera.height}, the size of rig {rig.name}'s camera"
-            raise InvalidInput(f"the {side} image is {size} px; expected {expected}")
+        check_size(image, getattr(rig, side), f"the {side} image", f"rig {rig.name}'s camera")
     return arrays

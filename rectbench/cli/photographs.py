@@ -49,9 +49,16 @@ def pose(request: PoseRequest) -> int:
 @verb(ReconstructRequest)
 def reconstruct(request: ReconstructRequest) -> int:
     """Reconstruct an image pair in 3-D: a coloured point cloud, depth, disparity and a picture."""
-    from rectbench.applications.reconstruct import reconstruct_pair
+    from rectbench.applications.one_rig import calibrated_pair, rectify_rig
+    from rectbench.matching import reconstruct
+    from rectbench.matching.dense.matchers import matcher_named
+    from rectbench.reporting.pictures.reconstructed import write_reconstruction
 
-    for file in reconstruct_pair(request):
+    matcher_named(request.matcher)  # a wrong name is told before the work begins
+    rig, images = calibrated_pair(request)
+    rect, how = rectify_rig(rig, request, images=images), {"nearest_baselines", "pixels"}
+    found = reconstruct(rect, *images, request.matcher, **request.model_dump(include=how))
+    for file in write_reconstruction(found, request.out):
         print(file)
     return GOOD
 

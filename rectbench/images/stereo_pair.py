@@ -9,11 +9,20 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
 from rectbench.images.reading import encoded
 from rectbench.rigs.rig import Rig
 
 Image = NDArray[np.uint8]
+
+
+def check_size(image: NDArray[np.generic], camera: Camera, name: str, whose: str) -> None:
+    """Raise InvalidInput, which calls the image and the camera so, where it has not the camera's size."""
+    if image.ndim not in (2, 3) or image.shape[1::-1] != camera.size:
+        size = "x".join(map(str, image.shape[1::-1]))
+        expected = f"{camera.width}x{camera.height}, the size of {whose}"
+        raise InvalidInput(f"{name} is {size} px; expected {expected}")
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,7 +37,7 @@ class StereoPair:
     >>> rb.StereoPair(black, black).check(rb.load_rig("t265"))
     Traceback (most recent call last):
     ...
-    rectbench.errors.InvalidInput: left image is 640x480; expected 848x800, the size of rig t265's camera
+    rectbench.errors.InvalidInput: left image is 640x480 px; expected 848x800, the size of rig t265's camera
     """
 
     left: Image
@@ -44,13 +53,7 @@ class StereoPair:
     def check(self, rig: Rig) -> None:
         """Raise InvalidInput where an image's size is not its camera's."""
         for side in ("left", "right"):
-            height, width = getattr(self, side).shape[:2]
-            camera = getattr(rig, side)
-            if (width, height) != camera.size:
-                raise InvalidInput(
-                    f"{side} image is {width}x{height}; expected {camera.width}x{camera.height}, "
-                    f"the size of rig {rig.name}'s camera"
-                )
+            check_size(getattr(self, side), getattr(rig, side), f"{side} image", f"rig {rig.name}'s camera")
 
     def save(self, folder: str | Path) -> None:
         """Write left.png and right.png into a folder, which is made where it does not exist."""

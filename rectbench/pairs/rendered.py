@@ -7,10 +7,13 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 
+import numpy as np
+
 from rectbench.calibrations import load_rig
 from rectbench.errors import Unavailable
 from rectbench.images.stereo_pair import StereoPair
-from rectbench.pairs.features import scored_features
+from rectbench.matching import match_features
+from rectbench.matching.pose.consistent import SCORING_PIXELS
 from rectbench.pairs.pair import Pair
 from rectbench.pairs.rendering import IMAGES, TRUTH, TRUTH_FILE, Studio, placed, truth_inputs
 from rectbench.pairs.spec import ESTIMATED, RenderedSpec
@@ -18,9 +21,12 @@ from rectbench.rendering.truth import Truth
 from rectbench.rigs import Rig
 from rectbench.store.keys import Inputs
 from rectbench.types import Matches
+from rectbench.warps import centre_resolution_px
 
 SHOWN_MATCHES = 2000
 """True correspondences that pictures choose from."""
+FARTHEST_PX = 3.0
+"""A feature match farther from its epipolar plane is a wrong match, not an imprecise one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,3 +117,20 @@ class RenderedPair(Pair):
             }
             if lacking:
                 self.studio.render(self.spec, self.rig, self.store, lacking)
+
+
+def scored_features(images: StereoPair, rig: Rig) -> Matches:
+    """SIFT matches [N, 2] each within 3 px of the rig's epipolar planes.
+
+    The distance is the angle between the right ray and the plane of the left one, times the pixels
+    per radian at the centre. A rectifier never sees these matches.
+    """
+    found = match_features(images.left, images.right, working_pixels=SCORING_PIXELS)
+    rays_left, ok_left = rig.left.unproject(found.left)
+    rays_right, ok_right = rig.right.unproject(found.right)
+    normals = rays_left @ rig.essential_matrix.T
+    with np.errstate(invalid="ignore", divide="ignore"):
+        sines = (rays_right * normals).sum(axis=-1) / np.linalg.norm(normals, axis=-1)
+        near = np.abs(np.arcsin(np.clip(sines, -1, 1))) * centre_resolution_px(rig) <= FARTHEST_PX
+    kept = ok_left & ok_right & near
+    return Matches(found.left[kept], found.right[kept])

@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rectbench.applications.choose_method import Choice, best_method, uncalibrated_methods
 from rectbench.applications.one_rig import rig_of
@@ -34,6 +33,7 @@ from rectbench.applications.requests.photographs import BEST, FramingRequest, Re
 from rectbench.calibrations import holds_many
 from rectbench.errors import InvalidInput, UnknownName
 from rectbench.images.reading import read_images
+from rectbench.images.stereo_pair import check_size
 from rectbench.matching.pose.uncalibrated import uncalibrated
 from rectbench.metrics import frame_costs
 from rectbench.pairs.finding.image_pairs import image_pairs
@@ -47,8 +47,6 @@ from rectbench.types import Images, Matches
 from rectbench.warps import Framing, Rectification, framed
 from rectbench.warps.lookup.resampling import Resampler
 from rectbench.writing import check_writable, write_atomically
-
-Image = NDArray[np.generic]
 
 
 def rectify_photographs(request: RectifyRequest, progress: bool | None = None) -> RectifiedImages:
@@ -85,7 +83,9 @@ def rectify_photographs(request: RectifyRequest, progress: bool | None = None) -
         unpaired=found.left_out,
     )
     contents = _rig_files(made, request)
-    contents["preview.png"] = preview_file(*_resampled(first, resamplers))
+    contents["preview.png"] = preview_file(
+        *(resample(image) for resample, image in zip(resamplers, first, strict=True))
+    )
     _remove_earlier(request.out, contents)
     files = _written(contents, request.out)
 
@@ -187,9 +187,7 @@ def _first_readable(pairs: Sequence[FilePair], rig: Rig | None = None) -> tuple[
 def _images_of(pair: FilePair, rig: Rig | None) -> Images:
     images = read_images(pair.left, pair.right)
     for path, image, camera in zip(pair.files, images, (rig.left, rig.right) if rig else (), strict=False):
-        if image.shape[1::-1] != camera.size:
-            (width, height), expected = image.shape[1::-1], f"{camera.width}x{camera.height}"
-            raise InvalidInput(f"{path}: is {width}x{height} px; expected {expected}, the size of its camera")
+        check_size(image, camera, f"{path}:", "its camera")
     return images
 
 
@@ -200,11 +198,6 @@ def _averaging(resamplers: Sequence[Resampler]) -> dict[str, float]:
         return {}
     share = float(np.mean([footprints.shrunk_share for footprints in found]))
     return {"averaged_share": share, "longest_footprint_px": max(one.largest_px for one in found)}
-
-
-def _resampled(images: Images, resamplers: Sequence[Resampler]) -> list[Image]:
-    with ThreadPoolExecutor(2) as threads:
-        return list(threads.map(lambda image, resampler: resampler(image), images, resamplers))
 
 
 def _image_files(images: Images, resamplers: Sequence[Resampler], stem: str) -> Files:

@@ -7,7 +7,7 @@ from typing import Any, Literal, Self
 
 from pydantic import model_validator
 
-from rectbench.applications.requests.request import Request, positional, word
+from rectbench.applications.requests.request import Request, of_text, positional, word
 from rectbench.applications.requests.shared import (
     CALIBRATION,
     METHOD,
@@ -41,18 +41,23 @@ class FramingRequest(Request):
     crop: Literal["valid"] | tuple[float, float, float, float] | None = word(
         "Show the largest rectangle in which both images are valid, or one in pixels.",
         metavar="valid|X,Y,W,H",
-        parse=crop_in,
+        parse=of_text(crop_in),
     )
     fov_deg: tuple[float, float] | None = word(
-        "Show a field of view, across and down, degrees.", "--fov", metavar="DEGxDEG", parse=angles_in
+        "Show a field of view, across and down, degrees.",
+        "--fov",
+        metavar="DEGxDEG",
+        parse=of_text(angles_in),
     )
     coverage: float | None = word("Show this share of the source pixels, up to 1.", metavar="SHARE")
-    size: tuple[int, int] | None = word("Size of the rectified images, pixels.", metavar="WxH", parse=size_in)
+    size: tuple[int, int] | None = word(
+        "Size of the rectified images, pixels.", metavar="WxH", parse=of_text(size_in)
+    )
     focal_px: float | Literal["source"] | None = word(
         "Pixels per radian in the middle, or those of the source images there.",
         "--focal",
         metavar="PX|source",
-        parse=focal_in,
+        parse=of_text(focal_in),
     )
     pixels: float | None = word("Budget: a larger image is made smaller.", metavar="NUMBER")
 

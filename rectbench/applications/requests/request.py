@@ -30,11 +30,16 @@ class Word:
 def word(
     text: str, *names: str, default: Any = None, parse: Callable[..., Any] | None = None, **how: Any
 ) -> Any:
-    """A field with what it is, its default, what reads its texts, and what else its `Word` says."""
+    """A field with what it is, its default, what reads what is given, and what else its `Word` says."""
     word = Word(names, **how)
     field = Field(default, description=text, ge=word.least)
     field.metadata += [word] if parse is None else [word, BeforeValidator(parse)]
     return field
+
+
+def of_text(parse: Callable[[str], Any]) -> Callable[[Any], Any]:
+    """What reads a text by `parse`; what is no text stays."""
+    return lambda given: parse(given) if isinstance(given, str) else given
 
 
 def positional(metavar: str, text: str, default: Any = ...) -> Any:

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 from pydantic import BeforeValidator
 
-from rectbench.applications.requests.request import Request, number, word
+from rectbench.applications.requests.request import Request, number, of_text, word
 from rectbench.applications.requests.words import options_in, size_in
 from rectbench.plugins.defaults import DEFAULT_METHOD
 
@@ -39,7 +39,7 @@ class SizedRigRequest(RigRequest):
     """A rig without images that would tell their size."""
 
     size: tuple[int, int] | None = word(
-        "The images' size, where the calibration does not tell.", metavar="WxH", parse=size_in
+        "The images' size, where the calibration does not tell.", metavar="WxH", parse=of_text(size_in)
     )
 
 

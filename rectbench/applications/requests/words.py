@@ -1,4 +1,4 @@
-"""Words of a command line, or a text in Python, as the values that they mean; what is no text stays."""
+"""Words of a command line, or a text in Python, as the values that they mean."""
 
 from __future__ import annotations
 
@@ -40,33 +40,29 @@ def tables_in(words: Any) -> Any:
     return () if list(words) == ["none"] else tuple(words)
 
 
-def angles_in(text: Any) -> Any:
+def angles_in(text: str) -> Any:
     """Two angles with an x between them, such as 100x80."""
-    if not isinstance(text, str):
-        return text
     return _numbers(_around_x(text), f"fov is {text}; expected two angles such as 100x80", 2)
 
 
-def size_in(text: Any) -> Any:
+def size_in(text: str) -> Any:
     """(width, height) in whole pixels of a text such as 1280x800."""
-    if not isinstance(text, str):
-        return text
     sides = _numbers(_around_x(text), f"size is {text}; expected width and height such as 1280x800", 2)
     if any(side != round(side) for side in sides):
         raise InvalidInput(f"size is {text}; expected whole pixels")
     return [round(side) for side in sides]
 
 
-def crop_in(text: Any) -> Any:
+def crop_in(text: str) -> Any:
     """The word valid, or the four numbers of a text such as 10,20,640,480."""
-    if not isinstance(text, str) or text == "valid":
+    if text == "valid":
         return text
     return _numbers(text.split(","), f"crop is {text}; expected valid, or x,y,width,height in pixels", 4)
 
 
-def focal_in(text: Any) -> Any:
+def focal_in(text: str) -> Any:
     """The word source, or the number of a text."""
-    if not isinstance(text, str) or text == "source":
+    if text == "source":
         return text
     return _numbers([text], f"focal is {text}; expected a number of pixels, or source")[0]
 

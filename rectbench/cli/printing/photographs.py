@@ -43,19 +43,19 @@ def show_rectified(made: RectifiedImages) -> None:
     screen = console()
     if made.choice is not None:
         _show_choice(screen, made.choice)
-    columns = ["this frame"] + ([] if made.own_costs is None else ["the method's own frame"])
-    table = plain_table(made.method, *columns)
+    frames = {"this frame": made.costs}
+    if made.own_costs is not None:
+        frames["the method's own frame"] = made.own_costs
+    table = plain_table(made.method, *frames)
     for name, text in _COSTS:
-        costs = (made.costs, made.own_costs)
-        table.add_row(name, *(text(cost) for cost in costs if cost is not None))
+        table.add_row(name, *map(text, frames.values()))
     if "averaged_share" in made.costs:
         share, longest = made.costs["averaged_share"], made.costs["longest_footprint_px"]
         table.add_row("averaged over several source pixels", f"{share:.1%}, over up to {longest:.1f} px")
     for kind, words in (("board", "rows, corners of a board"), ("features", "rows, features")):
         if f"row_error_{kind}_median_px" in made.rows:
-            median, p95, count = (
-                made.rows[f"row_error_{kind}_{n}"] for n in ("median_px", "p95_px", "matches")
-            )
+            names = ("median_px", "p95_px", "matches")
+            median, p95, count = (made.rows[f"row_error_{kind}_{name}"] for name in names)
             table.add_row(words, f"{median:.2f} px in the median, {p95:.2f} px at 95 %, of {count:.0f}")
     screen.print(table)
     for reason in made.left_out:
@@ -74,12 +74,10 @@ def _show_choice(screen: Console, choice: Choice) -> None:
     for candidate in choice.candidates:
         found = candidate.measured
         rows = found.get("row_error_source_median_px")
+        rows_px = "" if rows is None else f"{rows:.2f}"
+        distortion = f"{found['log_distortion_kept']:.3f}" if found else ""
         size = f"{found['width_px']:.0f}x{found['height_px']:.0f}" if found else ""
-        numbers = (
-            f"{found['log_distortion_kept']:.3f}" if found else "",
-            "" if rows is None else f"{rows:.2f}",
-        )
-        table.add_row(candidate.method, *numbers, size, Text(candidate.reason, style="yellow"))
+        table.add_row(candidate.method, distortion, rows_px, size, Text(candidate.reason, style="yellow"))
     screen.print(table)
     screen.print(f"{choice.why}.\n", soft_wrap=True)
 
@@ -90,19 +88,14 @@ def show_pose(estimate: PoseEstimate, rig: Rig) -> None:
     rotation_deg, direction_deg = estimate.difference_deg(rig)
     (a, b, c), (x, y, z) = estimate.rotation_vector_deg, estimate.direction_right_left
     found, seconds = len(estimate.inliers.left), estimate.seconds
-    for name, value, remark in (
-        ("rotation", f"({a:+.3f}, {b:+.3f}, {c:+.3f})°", f"± {estimate.rotation_sigma_deg:.3f}°"),
-        ("direction", f"({x:+.4f}, {y:+.4f}, {z:+.4f})", f"± {estimate.direction_sigma_deg:.3f}°"),
-        ("motion", estimate.motion, ""),
-        ("matches", f"{found} of {estimate.given} fit", f"noise {estimate.noise_px:.2f} px a coordinate"),
-        ("calibration", f"rotation {rotation_deg:.3f}° off", f"direction {direction_deg:.3f}° off"),
-        (
-            "time",
-            f"{sum(seconds.values()):.2f} s",
-            ", ".join(f"{stage} {took:.2f}" for stage, took in seconds.items()),
-        ),
-    ):
-        table.add_row(name, value, remark)
+    stages = ", ".join(f"{stage} {took:.2f}" for stage, took in seconds.items())
+    row = table.add_row
+    row("rotation", f"({a:+.3f}, {b:+.3f}, {c:+.3f})°", f"± {estimate.rotation_sigma_deg:.3f}°")
+    row("direction", f"({x:+.4f}, {y:+.4f}, {z:+.4f})", f"± {estimate.direction_sigma_deg:.3f}°")
+    row("motion", estimate.motion)
+    row("matches", f"{found} of {estimate.given} fit", f"noise {estimate.noise_px:.2f} px a coordinate")
+    row("calibration", f"rotation {rotation_deg:.3f}° off", f"direction {direction_deg:.3f}° off")
+    row("time", f"{sum(seconds.values()):.2f} s", stages)
     screen.print(table)
     if estimate.note:
         screen.print(Text(f"warning: {estimate.note}", style="yellow"), soft_wrap=True)
@@ -130,9 +123,8 @@ def show_uncertainty(found: Uncertainty, covariance: RigCovariance) -> None:
     screen.print(rows)
     screen.print()
     screen.print(shares)
-    if any(
-        (share < -0.005).any() for share in (*found.row_error_shares.values(), *found.depth_shares.values())
-    ):
+    every_share = (*found.row_error_shares.values(), *found.depth_shares.values())
+    if any((share < -0.005).any() for share in every_share):
         screen.print("below 0: what one group adds, another that it is correlated with takes away")
 
 

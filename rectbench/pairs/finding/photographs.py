@@ -61,7 +61,7 @@ class Photographs:
 def find_photographs(folder: str | Path) -> Photographs:
     """The pairs in a folder and all below it, each with the calibration nearest above it.
 
-    A manifest, see `data_manifest`, may state what cannot be found. A pair below several calibrations of
+    A manifest, see `manifest`, may state what cannot be found. A pair below several calibrations of
     one folder is there once for each. Raises InvalidInput where there is no pair with a calibration, with
     the first reasons, and for a manifest that cannot be used.
     """
