@@ -44,6 +44,9 @@ class CheckResult:
     detail: str
 
 
+Check = Callable[[Plugin[Rectifier], Problem, Rectification], tuple[bool, str]]
+
+
 def check_method(plugin: Plugin[Rectifier]) -> Iterator[CheckResult]:
     """All checks of a rectifier on several rigs, as they are done.
 
@@ -64,14 +67,11 @@ def check_method(plugin: Plugin[Rectifier]) -> Iterator[CheckResult]:
             continue
         supported = True
         yield CheckResult(name, "fit", "passed", f"{rectification.size[0]}x{rectification.size[1]} px")
-        for title, check in _CHECKS.items():
+        for check in _CHECKS:
             passed, detail = _found(check, plugin, problem, rectification)
-            yield CheckResult(name, title, "passed" if passed else "failed", detail)
+            yield CheckResult(name, check.__name__.strip("_"), "passed" if passed else "failed", detail)
     if not supported:
         yield CheckResult("all", "fit", "failed", "the method serves none of the rigs")
-
-
-Check = Callable[[Plugin[Rectifier], Problem, Rectification], tuple[bool, str]]
 
 
 def _found(
@@ -117,10 +117,8 @@ def _closure(plugin: Plugin[Rectifier], problem: Problem, rect: Rectification) -
         there = warp.forward(pixels)
         known = np.isfinite(there).all(axis=-1)
         mapped.append(known.mean())
-        if known.any():
-            back = warp.inverse(there[known])
-            worst = max(worst, float(np.linalg.norm(back - pixels[known], axis=-1).max()))  # NaN stays NaN
-            worst = np.inf if np.isnan(back).any() else worst
+        off = np.linalg.norm(warp.inverse(there[known]) - pixels[known], axis=-1)
+        worst = max(worst, float(np.nan_to_num(off, nan=np.inf).max(initial=0)))
     share = float(min(mapped))
     if share < SCORED_SHARE:
         return False, f"only {share:.0%} of the pixels are mapped"
@@ -185,11 +183,4 @@ def _repeatable(plugin: Plugin[Rectifier], problem: Problem, rect: Rectification
     return True, "the same maps twice"
 
 
-_CHECKS: dict[str, Check] = {
-    "maps": _maps,
-    "closure": _closure,
-    "jacobian": _jacobian,
-    "orientation": _orientation,
-    "rows": _rows,
-    "repeatable": _repeatable,
-}
+_CHECKS: tuple[Check, ...] = (_maps, _closure, _jacobian, _orientation, _rows, _repeatable)

@@ -15,13 +15,7 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
-from rectbench.applications.export.pair_files import (
-    calibration_files,
-    image_files,
-    pair_facts,
-    rectified_files,
-    truth_files,
-)
+from rectbench.applications.export import pair_files
 from rectbench.applications.export.readme import readme_text
 from rectbench.applications.one_rig import rig_of
 from rectbench.applications.render import scene_source
@@ -143,11 +137,11 @@ def _write_pair(export: _Export, seed: int, mark: str, out: Path) -> dict[str, A
     truth, rectified = stage.survey(rect.rig), stage.survey_rectified(rect)
     noise = render_seed(export.scene.name, export.rig.name, request.motion, seed)
     images = stage.photograph(rect.rig, seed=noise, spp=request.spp)
-    calibrations, refused = calibration_files(rect.rig, name)
+    calibrations, refused = pair_files.calibration_files(rect.rig, name)
     contents = {
-        **image_files(images, name),
-        **truth_files(truth, name),
-        **rectified_files(images, rectified, export.method.name, name),
+        **pair_files.image_files(images, name),
+        **pair_files.truth_files(truth, name),
+        **pair_files.rectified_files(images, rectified, export.method.name, name),
         **calibrations,
     }
     for path, content in contents.items():
@@ -156,7 +150,7 @@ def _write_pair(export: _Export, seed: int, mark: str, out: Path) -> dict[str, A
         "name": name,
         "seed": seed,
         "settings": mark,
-        **pair_facts(truth, rectified),
+        **pair_files.pair_facts(truth, rectified),
         "calibrations_not_written": refused,
         "files": {path: sha256(content).hexdigest() for path, content in sorted(contents.items())},
     }

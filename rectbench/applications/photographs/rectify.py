@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from rectbench.applications import rectification_files as encode
 from rectbench.applications.choose_method import Choice, best_method, uncalibrated_methods
 from rectbench.applications.one_rig import rig_of
 from rectbench.applications.photographs.rectified import (
@@ -19,16 +20,7 @@ from rectbench.applications.photographs.rectified import (
     RectifiedImages,
     summary_files,
 )
-from rectbench.applications.rectification_files import (
-    SIDES,
-    SUFFIXES,
-    TABLES,
-    Files,
-    description_files,
-    image_file,
-    mask_files,
-    preview_file,
-)
+from rectbench.applications.rectification_files import SIDES, Files
 from rectbench.applications.requests.photographs import BEST, FramingRequest, RectifyRequest
 from rectbench.calibrations import holds_many
 from rectbench.errors import InvalidInput, UnknownName
@@ -62,8 +54,8 @@ def rectify_photographs(request: RectifyRequest, progress: bool | None = None) -
     asked for can serve the rig. Nothing is written then.
     """
     for kind in request.tables:
-        if kind not in TABLES:
-            raise UnknownName("kind of tables", kind, TABLES)
+        if kind not in encode.TABLES:
+            raise UnknownName("kind of tables", kind, encode.TABLES)
     check_writable(request.out)
     found = image_pairs(request.left, request.right)
     pairs = found.pairs
@@ -83,9 +75,8 @@ def rectify_photographs(request: RectifyRequest, progress: bool | None = None) -
         unpaired=found.left_out,
     )
     contents = _rig_files(made, request)
-    contents["preview.png"] = preview_file(
-        *(resample(image) for resample, image in zip(resamplers, first, strict=True))
-    )
+    shown = [resample(image) for resample, image in zip(resamplers, first, strict=True)]
+    contents["preview.png"] = encode.preview_file(*shown)
     _remove_earlier(request.out, contents)
     files = _written(contents, request.out)
 
@@ -100,10 +91,10 @@ def rectify_photographs(request: RectifyRequest, progress: bool | None = None) -
             else:
                 stem = f"{{side}}/{pair.name}" if len(pairs) > 1 else "{side}"
                 files += _written(_image_files(both, resamplers, stem), request.out)
-                shown = known if pair is readable else OwnMatches()
+                own_matches = known if pair is readable else OwnMatches()
                 if place in measured and pair is not readable:
-                    shown = OwnMatches.of(both, rig, request.seed)
-                results.append(shown.measured(pair, rect))
+                    own_matches = OwnMatches.of(both, rig, request.seed)
+                results.append(own_matches.measured(pair, rect))
             advance()
     made = replace(made, pairs=tuple(results))
     return replace(made, files=(*files, *_written(summary_files(made), request.out)))
@@ -163,9 +154,9 @@ def _rig_files(made: RectifiedImages, request: RectifyRequest) -> Files:
         facts["chosen"] = made.choice.why
     if request.rig is None:
         facts["calibrated"] = "no: the rig below is assumed, and its baseline is 1 of an unknown unit"
-    contents = description_files(made.rectification, **facts) | mask_files(made.rectification)
+    contents = encode.description_files(made.rectification, **facts) | encode.mask_files(made.rectification)
     for kind in request.tables:
-        contents |= TABLES[kind](made.rectification)
+        contents |= encode.TABLES[kind](made.rectification)
     return contents
 
 
@@ -203,7 +194,8 @@ def _averaging(resamplers: Sequence[Resampler]) -> dict[str, float]:
 def _image_files(images: Images, resamplers: Sequence[Resampler], stem: str) -> Files:
     """Both rectified images, encoded; `stem` is their path with {side} in it."""
     with ThreadPoolExecutor(2) as threads:
-        encoded = threads.map(lambda image, resampler: image_file(resampler(image)), images, resamplers)
+        rectified = threads.map(lambda image, resample: resample(image), images, resamplers)
+        encoded = threads.map(encode.image_file, rectified)
         names = (stem.format(side=side) for side in SIDES)
         return {name + suffix: data for name, (suffix, data) in zip(names, encoded, strict=True)}
 
@@ -211,7 +203,7 @@ def _image_files(images: Images, resamplers: Sequence[Resampler], stem: str) -> 
 def _refuse_overwriting(pairs: Sequence[FilePair], out: Path) -> None:
     """Raise InvalidInput where an image would be written over a photograph."""
     names = [f"{side}/{pair.name}" for pair in pairs for side in SIDES] if len(pairs) > 1 else SIDES
-    written = {(out / (name + suffix)).resolve() for name in names for suffix in SUFFIXES}
+    written = {(out / (name + suffix)).resolve() for name in names for suffix in encode.SUFFIXES}
     for photograph in (path for pair in pairs for path in pair.files):
         if photograph.resolve() in written:
             raise InvalidInput(f"{photograph} would be overwritten; expected another folder than {out}")

@@ -7,27 +7,22 @@ from typing import Any, Literal, Self
 
 from pydantic import model_validator
 
-from rectbench.applications.requests.request import Request, of_text, positional, word
-from rectbench.applications.requests.shared import (
+from rectbench.applications.requests import words
+from rectbench.applications.requests.request import (
     CALIBRATION,
     METHOD,
     METHOD_SEED,
     OUT,
     OptionsRequest,
     Positive,
+    Request,
     RigRequest,
     Seed,
     SeededMethodRequest,
     SizedRigRequest,
     Text,
-)
-from rectbench.applications.requests.words import (
-    angles_in,
-    crop_in,
-    distances_in,
-    focal_in,
-    size_in,
-    tables_in,
+    positional,
+    word,
 )
 from rectbench.errors import InvalidInput
 from rectbench.plugins.defaults import DEFAULT_METHOD, UNCALIBRATED_METHOD
@@ -41,23 +36,20 @@ class FramingRequest(Request):
     crop: Literal["valid"] | tuple[float, float, float, float] | None = word(
         "Show the largest rectangle in which both images are valid, or one in pixels.",
         metavar="valid|X,Y,W,H",
-        parse=of_text(crop_in),
+        parse=words.crop_in,
     )
     fov_deg: tuple[float, float] | None = word(
-        "Show a field of view, across and down, degrees.",
-        "--fov",
-        metavar="DEGxDEG",
-        parse=of_text(angles_in),
+        "Show a field of view, across and down, degrees.", "--fov", metavar="DEGxDEG", parse=words.angles_in
     )
     coverage: float | None = word("Show this share of the source pixels, up to 1.", metavar="SHARE")
     size: tuple[int, int] | None = word(
-        "Size of the rectified images, pixels.", metavar="WxH", parse=of_text(size_in)
+        "Size of the rectified images, pixels.", metavar="WxH", parse=words.size_in
     )
     focal_px: float | Literal["source"] | None = word(
         "Pixels per radian in the middle, or those of the source images there.",
         "--focal",
         metavar="PX|source",
-        parse=of_text(focal_in),
+        parse=words.focal_in,
     )
     pixels: float | None = word("Budget: a larger image is made smaller.", metavar="NUMBER")
 
@@ -83,7 +75,7 @@ class RectifyRequest(FramingRequest, OptionsRequest, RigRequest):
         "Lookup tables: npz, opencv, fixed, separated by commas; or none.",
         default=("npz", "opencv", "fixed"),
         metavar="KINDS",
-        parse=tables_in,
+        parse=words.tables_in,
         has_commas=True,
     )
     measured_pairs: int = word(
@@ -157,7 +149,7 @@ class UncertaintyRequest(SeededMethodRequest, SizedRigRequest):
     depth_m: list[float] | None = word(
         "Distances of the points seen, such as 1,10,inf; else 10 and 100 baselines and infinity.",
         metavar="METRES",
-        parse=distances_in,
+        parse=words.distances_in,
         has_commas=True,
     )
     matching_px: float = word("σ of a match's disparity, in rectified pixels.", default=0.25, least=0)

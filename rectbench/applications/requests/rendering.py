@@ -7,8 +7,16 @@ from typing import Self
 
 from pydantic import model_validator
 
-from rectbench.applications.requests.request import positional, word
-from rectbench.applications.requests.shared import OUT, ImageWidth, MethodRequest, Seed, SizedRigRequest, Text
+from rectbench.applications.requests.request import (
+    OUT,
+    ImageWidth,
+    MethodRequest,
+    Seed,
+    SizedRigRequest,
+    Text,
+    positional,
+    word,
+)
 from rectbench.applications.requests.words import whole_numbers_in
 from rectbench.errors import InvalidInput
 

@@ -18,9 +18,8 @@ from typing import Annotated, Any
 
 from pydantic import StrictBool, model_validator
 
-from rectbench.applications.requests.request import Request, listed, number, positional, word
-from rectbench.applications.requests.shared import Text
-from rectbench.applications.requests.words import OptionSets, option_sets_in, whole_numbers_in
+from rectbench.applications.requests.request import Request, Text, number, positional, word
+from rectbench.applications.requests.words import OptionSets, listed, option_sets_in, whole_numbers_in
 from rectbench.errors import InvalidInput, UnknownName
 
 Jobs = Annotated[int, number(Integral, "a whole number from 1 on", lambda n: n >= 1)]

@@ -3,16 +3,27 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 from pydantic import ValidationInfo
 
-from rectbench.applications.requests.request import listed
 from rectbench.errors import InvalidInput
 
 OptionSets = dict[str, dict[str, Any]]
 """Options by method and name."""
+
+
+def of_text(parse: Callable[[str], Any]) -> Callable[[Any], Any]:
+    """A function of a text that leaves what is no text as it is."""
+    return lambda given: parse(given) if isinstance(given, str) else given
+
+
+def listed(values: Any, info: ValidationInfo) -> Any:
+    """Several values as a list; one that is none is refused."""
+    if isinstance(values, str) or (values is not None and not isinstance(values, Iterable)):
+        raise InvalidInput(f"{info.field_name} is {values!r}; expected a list")
+    return None if values is None else list(values)
 
 
 def whole_numbers_in(words: Any, info: ValidationInfo) -> Any:
@@ -40,11 +51,13 @@ def tables_in(words: Any) -> Any:
     return () if list(words) == ["none"] else tuple(words)
 
 
+@of_text
 def angles_in(text: str) -> Any:
     """Two angles with an x between them, such as 100x80."""
     return _numbers(_around_x(text), f"fov is {text}; expected two angles such as 100x80", 2)
 
 
+@of_text
 def size_in(text: str) -> Any:
     """(width, height) in whole pixels of a text such as 1280x800."""
     sides = _numbers(_around_x(text), f"size is {text}; expected width and height such as 1280x800", 2)
@@ -53,6 +66,7 @@ def size_in(text: str) -> Any:
     return [round(side) for side in sides]
 
 
+@of_text
 def crop_in(text: str) -> Any:
     """The word valid, or the four numbers of a text such as 10,20,640,480."""
     if text == "valid":
@@ -60,6 +74,7 @@ def crop_in(text: str) -> Any:
     return _numbers(text.split(","), f"crop is {text}; expected valid, or x,y,width,height in pixels", 4)
 
 
+@of_text
 def focal_in(text: str) -> Any:
     """The word source, or the number of a text."""
     if text == "source":

@@ -32,7 +32,8 @@ def show_names(kind: str, verbose: bool) -> None:
 def _add_options(table: Table, method: Any) -> None:
     for name, option in method.Options.model_fields.items():
         limits = [_LIMITS[type(limit).__name__].format(limit) for limit in option.metadata]
-        kind = ", ".join([_kind_text(option.annotation), *limits, f"default {_plain(option.default)}"])
+        default = "none" if option.default is None else option.default
+        kind = ", ".join([_kind_text(option.annotation), *limits, f"default {default}"])
         text = f"{option.description} ({kind})"
         table.add_row(f"  --option {method.name}.{name}", text, style="dim")
     for reference in method.references:
@@ -50,10 +51,6 @@ def _kind_text(annotation: Any) -> str:
         return " or ".join(_kind_text(part) for part in get_args(annotation))
     names = {float: "number", int: "whole number", str: "text", bool: "true | false", type(None): "nothing"}
     return names.get(annotation, str(annotation))
-
-
-def _plain(default: Any) -> str:
-    return "none" if default is None else str(default)
 
 
 def show_checks(method: str, findings: Iterable[CheckResult]) -> int:
