@@ -81,17 +81,27 @@ def read_image(path: str | Path) -> NDArray[np.generic]:
     Depths that `cv2.remap` does not take are made the next wider one. Orientation tags are ignored: a
     calibration is one of the sensor's own rows and columns. Raises InvalidInput for what is no image.
     """
-    path = Path(path)
-    if not path.is_file():
+    image = _swapped(_opened(path, cv2.IMREAD_UNCHANGED))
+    return np.ascontiguousarray(image.astype(_WIDER.get(image.dtype.name, image.dtype), copy=False))
+
+
+def read_colours(path: str | Path) -> Rgb:
+    """An image file as 8 bits of RGB [H, W, 3], upright by its orientation tag; InvalidInput for no image."""
+    return np.ascontiguousarray(_swapped(_opened(path, cv2.IMREAD_COLOR)))
+
+
+def _opened(path: str | Path, how: int) -> NDArray[Any]:
+    """An image file as OpenCV reads it under this flag."""
+    if not Path(path).is_file():
         raise InvalidInput(f"{path}: no such image")
     try:
         with _quiet_opencv():
-            image = cv2.imread(str(path), cv2.IMREAD_UNCHANGED)
+            image: NDArray[Any] | None = cv2.imread(str(path), how)
     except cv2.error as error:  # a header that promises more pixels than OpenCV takes
         raise InvalidInput(f"{path}: OpenCV refuses it ({' '.join(str(error.err).split())})") from None
     if image is None:
         raise InvalidInput(f"{path}: not an image that OpenCV can read")
-    return np.ascontiguousarray(_swapped(image).astype(_WIDER.get(image.dtype.name, image.dtype), copy=False))
+    return image
 
 
 def encoded(image: NDArray[np.generic], suffix: str = ".png") -> bytes:

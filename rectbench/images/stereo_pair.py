@@ -5,13 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
-from rectbench.images.reading import encoded
+from rectbench.images.reading import encoded, read_colours
 from rectbench.rigs.rig import Rig
 
 Image = NDArray[np.uint8]
@@ -70,17 +69,7 @@ class StereoPair:
     @classmethod
     def read(cls, left: str | Path, right: str | Path, rig: Rig | None = None) -> StereoPair:
         """Read two image files; with a rig, their sizes are checked against it."""
-        pair = cls(_read(Path(left)), _read(Path(right)))
+        pair = cls(read_colours(left), read_colours(right))
         if rig is not None:
             pair.check(rig)
         return pair
-
-
-def _read(path: Path) -> Image:
-    if not path.is_file():
-        raise InvalidInput(f"{path}: no such image")
-    image = cv2.imread(str(path), cv2.IMREAD_COLOR)
-    if image is None:
-        raise InvalidInput(f"{path}: not an image that OpenCV can read")
-    colours: Image = np.asarray(cv2.cvtColor(image, cv2.COLOR_BGR2RGB), dtype=np.uint8)
-    return colours

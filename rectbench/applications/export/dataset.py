@@ -18,7 +18,6 @@ from typing import Any
 from rectbench.applications.export import pair_files
 from rectbench.applications.export.readme import readme_text
 from rectbench.applications.one_rig import rig_of
-from rectbench.applications.render import scene_source
 from rectbench.applications.requests.rendering import ExportRequest
 from rectbench.errors import InvalidInput
 from rectbench.pairs.rendering import RENDERING_PACKAGES, Studio, placed, render_seed
@@ -133,7 +132,7 @@ def _write_pair(export: _Export, seed: int, mark: str, out: Path) -> dict[str, A
     """Render and write a pair; its manifest, which is written last."""
     rect = export.rectification(seed)
     request, name = export.request, _name(seed)
-    stage = Studio().stage(scene_source(request.scene), seed, request.quality)
+    stage = Studio().stage(request.scene, seed, request.quality)
     truth, rectified = stage.survey(rect.rig), stage.survey_rectified(rect)
     noise = render_seed(export.scene.name, export.rig.name, request.motion, seed)
     images = stage.photograph(rect.rig, seed=noise, spp=request.spp)
