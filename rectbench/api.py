@@ -12,13 +12,11 @@ from typing import TYPE_CHECKING, Any
 
 from numpy.typing import ArrayLike
 
-from rectbench.applications.array_checks import checked_rig
-from rectbench.applications.estimate_pose import estimate_rig_pose
-from rectbench.applications.rectify_rig import rectify_rig
+from rectbench.applications.one_rig import checked_rig, estimate_rig_pose, rectify_rig
 from rectbench.applications.requests.photographs import PoseSettings, RectifyRequest
 from rectbench.applications.requests.rendering import ExportRequest, RenderRequest
+from rectbench.applications.requests.request import SeededMethodRequest
 from rectbench.applications.requests.running import RunRequest
-from rectbench.applications.requests.shared import SeededMethodRequest
 from rectbench.calibrations.reading import RigSource
 from rectbench.matching.features.matches import RATIO
 from rectbench.matching.pose.estimate import POSE_PIXELS, PoseEstimate

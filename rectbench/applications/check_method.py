@@ -44,6 +44,9 @@ class CheckResult:
     detail: str
 
 
+Check = Callable[[Plugin[Rectifier], Problem, Rectification], tuple[bool, str]]
+
+
 def check_method(plugin: Plugin[Rectifier]) -> Iterator[CheckResult]:
     """All checks of a rectifier on several rigs, as they are done.
 
@@ -64,33 +67,32 @@ def check_method(plugin: Plugin[Rectifier]) -> Iterator[CheckResult]:
             continue
         supported = True
         yield CheckResult(name, "fit", "passed", f"{rectification.size[0]}x{rectification.size[1]} px")
-        for title, check in _CHECKS.items():
-            yield _found(name, title, check, plugin, problem, rectification)
+        for check in _CHECKS:
+            passed, detail = _found(check, plugin, problem, rectification)
+            yield CheckResult(name, check.__name__.strip("_"), "passed" if passed else "failed", detail)
     if not supported:
         yield CheckResult("all", "fit", "failed", "the method serves none of the rigs")
 
 
-Check = Callable[[Plugin[Rectifier], Problem, Rectification], tuple[bool, str]]
-
-
 def _found(
-    rig: str, title: str, check: Check, plugin: Plugin[Rectifier], problem: Problem, rect: Rectification
-) -> CheckResult:
+    check: Check, plugin: Plugin[Rectifier], problem: Problem, rect: Rectification
+) -> tuple[bool, str]:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", RuntimeWarning)  # NaN is what stands for "no pixel here"
-            passed, detail = check(plugin, problem, rect)
+            return check(plugin, problem, rect)
     except Exception as error:  # a plugin's own warp may raise anything
-        passed, detail = False, outcome_of(error).reason
-    return CheckResult(rig, title, "passed" if passed else "failed", detail)
+        return False, outcome_of(error).reason
 
 
 def _described(plugin: Plugin[Rectifier]) -> CheckResult:
-    documented = all(field.description for field in plugin.value.Options.model_fields.values())
-    detail = plugin.summary or "the class has no docstring; expected one line that says what it is"
-    if not documented:
-        detail = "an option has no description"
-    return CheckResult("-", "described", "passed" if plugin.summary and documented else "failed", detail)
+    if not plugin.summary:
+        lack = "the class has no docstring; expected one line that says what it is"
+    elif not all(field.description for field in plugin.value.Options.model_fields.values()):
+        lack = "an option has no description"
+    else:
+        return CheckResult("-", "described", "passed", plugin.summary)
+    return CheckResult("-", "described", "failed", lack)
 
 
 def _sides(problem: Problem, rect: Rectification) -> tuple[tuple[str, Warp, FloatArray], ...]:
@@ -115,10 +117,8 @@ def _closure(plugin: Plugin[Rectifier], problem: Problem, rect: Rectification) -
         there = warp.forward(pixels)
         known = np.isfinite(there).all(axis=-1)
         mapped.append(known.mean())
-        if known.any():
-            back = warp.inverse(there[known])
-            worst = max(worst, float(np.linalg.norm(back - pixels[known], axis=-1).max()))  # NaN stays NaN
-            worst = np.inf if np.isnan(back).any() else worst
+        off = np.linalg.norm(warp.inverse(there[known]) - pixels[known], axis=-1)
+        worst = max(worst, float(np.nan_to_num(off, nan=np.inf).max(initial=0)))
     share = float(min(mapped))
     if share < SCORED_SHARE:
         return False, f"only {share:.0%} of the pixels are mapped"
@@ -131,12 +131,9 @@ def _jacobian(plugin: Plugin[Rectifier], problem: Problem, rect: Rectification) 
         exact = warp.jacobian(pixels)
         if exact.shape != (len(pixels), 2, 2):
             return False, f"{side}: shape {exact.shape}; expected {(len(pixels), 2, 2)}"
-        columns = []
-        for axis in range(2):
-            step = np.zeros(2)
-            step[axis] = STEP_PX
-            columns.append((warp.forward(pixels + step) - warp.forward(pixels - step)) / (2 * STEP_PX))
-        numeric = np.stack(columns, axis=-1)
+        steps = STEP_PX * np.eye(2)
+        moved = [warp.forward(pixels + step) - warp.forward(pixels - step) for step in steps]
+        numeric = np.stack(moved, axis=-1) / (2 * STEP_PX)
         inner = np.isfinite(numeric).all(axis=(1, 2))
         if not np.isfinite(exact[inner]).all():
             return False, f"{side}: NaN where the warp has values"
@@ -186,11 +183,4 @@ def _repeatable(plugin: Plugin[Rectifier], problem: Problem, rect: Rectification
     return True, "the same maps twice"
 
 
-_CHECKS: dict[str, Check] = {
-    "maps": _maps,
-    "closure": _closure,
-    "jacobian": _jacobian,
-    "orientation": _orientation,
-    "rows": _rows,
-    "repeatable": _repeatable,
-}
+_CHECKS: tuple[Check, ...] = (_maps, _closure, _jacobian, _orientation, _rows, _repeatable)

@@ -63,31 +63,23 @@ class Choice:
     @property
     def table(self) -> pd.DataFrame:
         """One row a method: method, status, reason and what was measured."""
-        return pd.DataFrame(
-            [
-                {"method": c.method, "status": c.status, "reason": c.reason, **c.measured}
-                for c in self.candidates
-            ]
-        )
+        rows = ((c, {"method": c.method, "status": c.status, "reason": c.reason}) for c in self.candidates)
+        return pd.DataFrame([about | dict(c.measured) for c, about in rows])
 
     @property
     def why(self) -> str:
         """The rule and how it fell out, in a sentence."""
-        best = self.best.measured
-        sentence = (
-            f"{self.best.method} has the least log distortion, {best[RANKING]:.3f}, where each method shows "
-            f"{_shown(self.framing)}"
-        )
+        parts = [
+            f"{self.best.method} has the least log distortion, {self.best.measured[RANKING]:.3f}, "
+            f"where each method shows {_shown(self.framing)}"
+        ]
         others = [c for c in self.candidates[1:] if c.rectification is not None]
-        rivals = [c for c in others if _rows_are_good(c, self.candidates)]
-        if rivals:
-            sentence += f"; next is {rivals[0].method} with {rivals[0].measured[RANKING]:.3f}"
-        worse = [c.method for c in others if not _rows_are_good(c, self.candidates)]
-        if worse:
-            sentence += (
-                f"; not counting {' and '.join(worse)}, whose rows are over {ROWS_AS_GOOD_PX:g} px worse"
-            )
-        return sentence
+        if rivals := [c for c in others if _rows_are_good(c, self.candidates)]:
+            parts.append(f"next is {rivals[0].method} with {rivals[0].measured[RANKING]:.3f}")
+        if worse := [c.method for c in others if c not in rivals]:
+            names = " and ".join(worse)
+            parts.append(f"not counting {names}, whose rows are over {ROWS_AS_GOOD_PX:g} px worse")
+        return "; ".join(parts)
 
 
 def best_method(
@@ -118,10 +110,8 @@ def best_method(
     """
     chosen = framing or Framing()
     if chosen.crop is not None:
-        raise InvalidInput(
-            f"methods are compared where all show the same, not in the crop {chosen.crop}; expected a "
-            "coverage or fov_deg"
-        )
+        same = f"methods are compared where all show the same, not in the crop {chosen.crop}"
+        raise InvalidInput(f"{same}; expected a coverage or fov_deg")
     if chosen.size is not None and chosen.focal_px is not None:
         raise InvalidInput("size and focal_px together say what is shown; expected one of them to compare in")
     if chosen.fov_deg is None and chosen.coverage is None:
@@ -159,11 +149,8 @@ def _tried(
 
 def _rank(candidate: Candidate, all_tried: Sequence[Candidate]) -> tuple[bool, bool, float]:
     value = candidate.measured.get(RANKING, math.inf)
-    return (
-        candidate.rectification is None,
-        not _rows_are_good(candidate, all_tried),
-        value if math.isfinite(value) else math.inf,
-    )
+    distortion = value if math.isfinite(value) else math.inf
+    return candidate.rectification is None, not _rows_are_good(candidate, all_tried), distortion
 
 
 def _rows_are_good(candidate: Candidate, all_tried: Sequence[Candidate]) -> bool:

@@ -7,13 +7,13 @@ import os
 import platform
 import re
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from rectbench import llvm
 from rectbench.applications.listing import plugin_kinds
 from rectbench.calibrations import rig_names
-from rectbench.errors import RectbenchError
+from rectbench.errors import RectbenchError, Unavailable
 from rectbench.registry import registry
 from rectbench.runs.machine import cpu_name, llvm_facts
 from rectbench.store.keys import versions
@@ -40,8 +40,8 @@ def examine() -> Iterator[Finding]:
     yield Finding("processor", True, f"{cpu_name()}, {os.cpu_count()} cores")
     yield from _packages()
     yield _llvm()
-    yield _mitsuba()
-    yield _store()
+    yield _tried("rendering", _mitsuba)
+    yield _tried("store", _store)
     yield from _plugins()
 
 
@@ -75,28 +75,30 @@ def _llvm() -> Finding:
     return Finding("LLVM", True, f"{facts['version']} at {facts['path'] or 'a place of Dr.Jit’s own choice'}")
 
 
-def _mitsuba() -> Finding:
+def _tried(name: str, look: Callable[[], str]) -> Finding:
+    """What is found by a look that raises a RectbenchError where something is missing."""
+    try:
+        return Finding(name, True, look())
+    except RectbenchError as error:
+        return Finding(name, False, str(error))
+
+
+def _mitsuba() -> str:
     from rectbench.rendering.variant import mitsuba
 
     if not llvm.available():
-        return Finding("rendering", False, "needs LLVM")
-    try:
-        mi = mitsuba()
-    except RectbenchError as error:
-        return Finding("rendering", False, str(error))
-    return Finding("rendering", True, f"Mitsuba {mi.__version__}, variant {mi.variant()}")
+        raise Unavailable("needs LLVM")
+    mi = mitsuba()
+    return f"Mitsuba {mi.__version__}, variant {mi.variant()}"
 
 
-def _store() -> Finding:
+def _store() -> str:
     store = Store.default()
-    try:
-        with store.making("doctor", {}):
-            pass
-    except RectbenchError as error:
-        return Finding("store", False, str(error))
+    with store.making("doctor", {}):
+        pass
     entries = store.entries()
     size = sum(entry.size_bytes for entry in entries) / 2**20
-    return Finding("store", True, f"{store.root}: {len(entries)} objects, {size:.0f} MiB")
+    return f"{store.root}: {len(entries)} objects, {size:.0f} MiB"
 
 
 def _plugins() -> Iterator[Finding]:

@@ -11,8 +11,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from rectbench.errors import Unavailable, Unsupported
-from rectbench.matching.dense.disparity import rgb8
+from rectbench.errors import Unsupported
+from rectbench.images.reading import encoded, rgb8
 from rectbench.warps import Rectification, opencv_form
 from rectbench.warps.description import rectification_text
 from rectbench.warps.lookup.resampling import Side
@@ -49,7 +49,7 @@ def description_files(rect: Rectification, **facts: Any) -> Files:
 
 def mask_files(rect: Rectification) -> Files:
     """`left_mask.png` and `right_mask.png`: 255 where the image shows source pixels, 0 elsewhere."""
-    return {f"{side}_mask.png": _encoded(".png", 255 * rect.valid(side).astype(np.uint8)) for side in SIDES}
+    return {f"{side}_mask.png": encoded(255 * rect.valid(side).astype(np.uint8)) for side in SIDES}
 
 
 def npz_tables(rect: Rectification) -> Files:
@@ -87,7 +87,7 @@ TABLES: Mapping[str, Callable[[Rectification], Files]] = {
 def image_file(image: NDArray[np.generic]) -> tuple[str, bytes]:
     """The suffix and content of an image file of the same depth: PNG for 8 and 16 bits, else TIFF."""
     suffix = SUFFIXES[0] if image.dtype in PNG_TYPES else SUFFIXES[1]
-    return suffix, _encoded(suffix, image)
+    return suffix, encoded(image, suffix)
 
 
 def preview_file(left: NDArray[np.generic], right: NDArray[np.generic]) -> bytes:
@@ -101,7 +101,7 @@ def preview_file(left: NDArray[np.generic], right: NDArray[np.generic]) -> bytes
     both = np.concatenate([images[0], gap, images[1]], axis=1)
     rows = np.linspace(0, len(both) - 1, SCAN_LINES + 2)[1:-1].round().astype(int)
     both[rows] = LINE_RGB
-    return _encoded(".png", both)
+    return encoded(both)
 
 
 def _float_maps(rect: Rectification) -> dict[str, NDArray[Any]]:
@@ -116,11 +116,8 @@ def _storage(values: Mapping[str, Any]) -> bytes:
     """An OpenCV FileStorage in YAML, its large matrices in base64, which reads a hundred times as fast."""
     large = any(np.size(value) > 1000 for value in values.values())
     # The form that OpenCV 3 and 4 write, too: it will be read by a robot of that age.
-    kind = cv2.FILE_STORAGE_FORMAT_YAML_1_0
-    flags = (
-        kind | cv2.FILE_STORAGE_WRITE | cv2.FILE_STORAGE_MEMORY | (cv2.FILE_STORAGE_BASE64 if large else 0)
-    )
-    storage = cv2.FileStorage(".yml", flags)
+    flags = cv2.FILE_STORAGE_FORMAT_YAML_1_0 | cv2.FILE_STORAGE_WRITE | cv2.FILE_STORAGE_MEMORY
+    storage = cv2.FileStorage(".yml", flags | (cv2.FILE_STORAGE_BASE64 if large else 0))
     for name, value in values.items():
         storage.write(name, value)
     return storage.releaseAndGetString().encode()
@@ -128,12 +125,3 @@ def _storage(values: Mapping[str, Any]) -> bytes:
 
 def _compressed(content: bytes) -> bytes:
     return gzip.compress(content, compresslevel=1, mtime=0)
-
-
-def _encoded(suffix: str, image: NDArray[Any]) -> bytes:
-    if image.ndim == 3 and image.shape[2] >= 3:
-        image = image[..., [2, 1, 0, 3][: image.shape[2]]]
-    ok, data = cv2.imencode(suffix, np.ascontiguousarray(image))
-    if not ok:
-        raise Unavailable(f"OpenCV cannot encode a {suffix} of {image.dtype}")
-    return bytes(data)

@@ -3,22 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from rectbench.applications.calibrated import rig_of
+from rectbench.applications.one_rig import rig_of
 from rectbench.applications.requests.rendering import RenderRequest
+from rectbench.images.stereo_pair import StereoPair
 from rectbench.pairs.rendering import placed, render_seed
 from rectbench.plugins.scene import SCENES
-from rectbench.registry import is_path, registry
-
-if TYPE_CHECKING:
-    from rectbench.images.stereo_pair import StereoPair
-    from rectbench.rendering.truth import Truth
-
-
-def scene_source(scene: str) -> str:
-    """A scene's name, or the absolute path of its file."""
-    return str(Path(scene).resolve()) if is_path(scene) else scene
+from rectbench.registry import registry
+from rectbench.rendering.truth import Truth
 
 
 def render(request: RenderRequest) -> tuple[StereoPair, Truth]:

@@ -7,9 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from rectbench import metrics
-from rectbench.applications.calibrated import rig_of
-from rectbench.applications.estimate_pose import estimate_rig_pose
-from rectbench.applications.rectify_rig import rectify_rig
+from rectbench.applications.one_rig import estimate_rig_pose, rectify_rig, rig_of
 from rectbench.applications.requests.photographs import PoseSettings, UncertaintyRequest
 from rectbench.calibrations import load_covariance
 from rectbench.errors import InvalidInput

@@ -31,7 +31,7 @@ for command in (
     machine.doctor,
     machine.gc,
 ):
-    app.command(command.__name__)(command)
+    app.command(command.__name__.strip("_"))(command)
 
 
 def main() -> None:

@@ -1,8 +1,12 @@
-"""The application that the verbs join: the words of a verb are the fields of its request."""
+"""The application that the verbs join.
+
+A verb of a rig, or one that Python has, too, is a function of a request, whose fields are its words. The
+others are functions as typer reads them. Each gives its exit code.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from inspect import Parameter, Signature
 from pathlib import Path
 from types import NoneType, UnionType
@@ -29,34 +33,39 @@ app = typer.Typer(
 R = TypeVar("R", bound=Request)
 
 
-def verb(request: type[R]) -> Callable[[Callable[[R], int]], Callable[..., None]]:
+def verb(request: type[R]) -> Callable[[Callable[[R], int]], Callable[..., int]]:
     """A verb of a function: it is called with the request that the words make, and gives the exit code."""
 
-    def made(does: Callable[[R], int]) -> Callable[..., None]:
-        def command(**words: Any) -> None:
-            raise typer.Exit(does(request(**_given(request, words))))
+    def made(does: Callable[[R], int]) -> Callable[..., int]:
+        def command(**words: Any) -> int:
+            return does(request(**_given(request, words)))
 
-        command.__signature__ = Signature(list(_parameters(request)))  # type: ignore[attr-defined]
-        command.__name__, command.__doc__ = does.__name__.strip("_"), does.__doc__
+        command.__signature__ = Signature([*_parameters(request)])  # type: ignore[attr-defined]
+        command.__name__, command.__doc__ = does.__name__, does.__doc__
         return command
 
     return made
 
 
+def parts(texts: Iterable[str]) -> list[str]:
+    """What stands between the commas of texts."""
+    return [part.strip() for text in texts for part in text.split(",") if part.strip()]
+
+
 def _parameters(request: type[Request]) -> Iterator[Parameter]:
-    """What typer reads: a field is an option, but for those that have their place."""
+    """What typer reads: a field is an option, but for those that have a place; words at the end come last."""
+    rest = []
     for name, field in request.model_fields.items():
         word = _word(field)
-        least: Any = next((limit.ge for limit in field.metadata if hasattr(limit, "ge")), None)
         info: Any = typer.Argument(metavar=word.metavar, help=field.description)
         if not word.is_positional:
             names = word.names or (f"--{name.replace('_', '-')}",)
-            info = typer.Option(*names, metavar=word.metavar, min=least, help=field.description)
+            info = typer.Option(*names, metavar=word.metavar, min=word.least, help=field.description)
         yield _parameter(name, _word_type(field), info, _default(field))
-    for name, field in request.model_fields.items():
-        if (word := _word(field)).takes_rest:
+        if word.takes_rest:
             info = typer.Argument(metavar=word.metavar, help=f"As --{name} {word.metavar}.")
-            yield _parameter(REST, list[str], info, None)
+            rest.append(_parameter(REST, list[str], info, None))
+    yield from rest
 
 
 def _parameter(name: str, kind: Any, info: Any, default: Any) -> Parameter:
@@ -65,22 +74,20 @@ def _parameter(name: str, kind: Any, info: Any, default: Any) -> Parameter:
 
 
 def _word(field: FieldInfo) -> Word:
-    return next((mark for mark in field.metadata if isinstance(mark, Word)), Word())
+    return next(mark for mark in field.metadata if isinstance(mark, Word))
 
 
 def _word_type(field: FieldInfo) -> Any:
     """What a word of the command line is read as; what typer has no word for is a text, or several."""
     is_union = get_origin(field.annotation) in (Union, UnionType)
     kinds = get_args(field.annotation) if is_union else (field.annotation,)
-    kind, *others = [_bare(kind) for kind in kinds if kind is not NoneType]
+    kind, *others = [
+        get_args(kind)[0] if get_origin(kind) is Annotated else kind for kind in kinds if kind is not NoneType
+    ]
     word = _word(field)
     if word.has_commas or word.takes_rest or get_origin(kind) in (list, dict):
         return list[str]
     return kind if not others and kind in (bool, int, float, str, Path) else str
-
-
-def _bare(kind: Any) -> Any:
-    return get_args(kind)[0] if get_origin(kind) is Annotated else kind
 
 
 def _default(field: FieldInfo) -> Any:
@@ -102,9 +109,6 @@ def _given(request: type[Request], words: dict[str, Any]) -> dict[str, Any]:
             if value is None and field.is_required():
                 flags = f"--{name} {word.metavar}, or {word.metavar} at the end"
                 raise InvalidInput(f"no {name} is given; expected {flags}")
-        if value is None or value == _default(field):
-            continue
-        if word.has_commas:
-            value = [part.strip() for text in value for part in text.split(",") if part.strip()]
-        given[name] = value
+        if value is not None and value != _default(field):
+            given[name] = parts(value) if word.has_commas else value
     return given

@@ -20,7 +20,7 @@ def rectify(request: RectifyRequest) -> int:
     Exit code 3 where some of several pairs had to be left out.
     """
     from rectbench.applications.photographs.rectify import rectify_photographs
-    from rectbench.cli.printing.rectified import show_rectified
+    from rectbench.cli.printing.photographs import show_rectified
 
     made = rectify_photographs(request)
     show_rectified(made)
@@ -34,9 +34,8 @@ def pose(request: PoseRequest) -> int:
     The calibration gives the two lenses and the length of the baseline; its own pose is compared with
     the estimate.
     """
-    from rectbench.applications.calibrated import calibrated_pair
-    from rectbench.applications.estimate_pose import estimate_rig_pose
-    from rectbench.cli.printing.pose import show_pose
+    from rectbench.applications.one_rig import calibrated_pair, estimate_rig_pose
+    from rectbench.cli.printing.photographs import show_pose
 
     rig, images = calibrated_pair(request)
     estimate = estimate_rig_pose(images, rig, request)
@@ -50,9 +49,16 @@ def pose(request: PoseRequest) -> int:
 @verb(ReconstructRequest)
 def reconstruct(request: ReconstructRequest) -> int:
     """Reconstruct an image pair in 3-D: a coloured point cloud, depth, disparity and a picture."""
-    from rectbench.applications.reconstruct import reconstruct_pair
+    from rectbench.applications.one_rig import calibrated_pair, rectify_rig
+    from rectbench.matching import reconstruct
+    from rectbench.matching.dense.matchers import matcher_named
+    from rectbench.reporting.pictures.reconstructed import write_reconstruction
 
-    for file in reconstruct_pair(request):
+    matcher_named(request.matcher)  # a wrong name is told before the work begins
+    rig, images = calibrated_pair(request)
+    rect, how = rectify_rig(rig, request, images=images), {"nearest_baselines", "pixels"}
+    found = reconstruct(rect, *images, request.matcher, **request.model_dump(include=how))
+    for file in write_reconstruction(found, request.out):
         print(file)
     return GOOD
 
@@ -65,7 +71,7 @@ def uncertainty(request: UncertaintyRequest) -> int:
     which what is said about lenses and baseline adds.
     """
     from rectbench.applications.uncertainty import propagate_uncertainty
-    from rectbench.cli.printing.uncertainty import show_uncertainty
+    from rectbench.cli.printing.photographs import show_uncertainty
 
     propagated = propagate_uncertainty(request)
     show_uncertainty(propagated.found, propagated.covariance)
@@ -77,7 +83,7 @@ def uncertainty(request: UncertaintyRequest) -> int:
 @verb(ConvertRequest)
 def convert(request: ConvertRequest) -> int:
     """Write a calibration in another format, exactly, or tell why that format cannot hold it."""
-    from rectbench.applications.calibrated import rig_of
+    from rectbench.applications.one_rig import rig_of
 
     for file in rig_of(request).save(request.out, request.to):
         print(file)

@@ -3,10 +3,16 @@
 from __future__ import annotations
 
 import sys
+from pathlib import Path
+from typing import Annotated
 
-from rectbench.applications.requests.running import CompareRequest, GateRequest, ReportRequest, RunRequest
-from rectbench.cli.app import GOOD, INCOMPLETE, verb
+from typer import Argument, Option
+
+from rectbench.applications.requests.running import RunRequest
+from rectbench.cli.app import GOOD, INCOMPLETE, parts, verb
 from rectbench.errors import UnknownName
+
+RunFolder = Annotated[Path, Argument(metavar="RUN", help="A run's folder.")]
 
 
 @verb(RunRequest)
@@ -17,7 +23,7 @@ def run(request: RunRequest) -> int:
     was; what is in the store is not done again.
     """
     from rectbench.applications.run_report import run_report
-    from rectbench.cli.printing.run_summary import show_summary
+    from rectbench.cli.printing.running import show_summary
     from rectbench.experiments.execution.running import Interrupted
     from rectbench.runs.making import run_folder
     from rectbench.runs.record import unreadable_images
@@ -37,50 +43,57 @@ def run(request: RunRequest) -> int:
     return GOOD
 
 
-@verb(ReportRequest)
-def report(request: ReportRequest) -> int:
+def report(folder: RunFolder) -> int:
     """Write the tables, figures and page of a run again."""
-    from rectbench.cli.printing.run_summary import show_summary
+    from rectbench.cli.printing.running import show_summary
     from rectbench.progress import progress_for
     from rectbench.reporting.report import write_report
 
-    write_report(request.folder, progress=progress_for(None))
-    show_summary(request.folder)
+    write_report(folder, progress=progress_for(None))
+    show_summary(folder)
     return GOOD
 
 
-@verb(GateRequest)
-def gate(request: GateRequest) -> int:
+def gate(
+    folder: RunFolder,
+    accepted: Annotated[
+        Path | None, Option(help="The accepted numbers; beside the report's file by default.")
+    ] = None,
+    accept: Annotated[bool, Option("--accept", help="Make the run's numbers the accepted ones.")] = False,
+) -> int:
     """Compare a run with the numbers accepted for its report.
 
     Exit code 0 where it is as good, 1 where it got worse, 3 where it is incomplete or measured nothing.
     """
-    from rectbench.cli.printing.gating import show_gating
+    from rectbench.cli.printing.running import show_gating
     from rectbench.runs import gating
 
-    path = request.accepted or gating.accepted_path(request.folder)
-    if request.accept:
-        print(f"{gating.accept(request.folder, path)} cells accepted in {path}")
+    path = accepted or gating.accepted_path(folder)
+    if accept:
+        print(f"{gating.accept(folder, path)} cells accepted in {path}")
         return GOOD
-    verdict = gating.gate(request.folder, path)
+    verdict = gating.gate(folder, path)
     show_gating(verdict)
     return verdict.exit_code
 
 
-@verb(CompareRequest)
-def compare(request: CompareRequest) -> int:
+def compare(
+    a: Annotated[Path, Argument(metavar="A", help="A run's folder.")],
+    b: Annotated[Path, Argument(metavar="B", help="Another.")],
+    metrics: Annotated[list[str] | None, Option(metavar="NAMES", help="Only these columns.")] = None,
+) -> int:
     """Compare two runs cell by cell: the median change B - A of every metric, with its 95 % interval."""
-    from rectbench.cli.printing.comparison import show_comparison
+    from rectbench.cli.printing.running import show_comparison
     from rectbench.runs import comparing
 
-    comparison = comparing.compare(request.a, request.b)
+    comparison, wanted = comparing.compare(a, b), parts(metrics or [])
     if comparison.table.empty:
         print("rectbench: no cell was measured in both runs", file=sys.stderr)
     known = set(comparison.table["metric"])
-    for name in request.metrics or []:
+    for name in wanted:
         if name not in known:
             raise UnknownName("metric", name, known)
-    show_comparison(comparison, request.metrics)
+    show_comparison(comparison, wanted or known)
     return INCOMPLETE if comparison.table.empty else GOOD
 
 

@@ -1,4 +1,4 @@
-"""Photographs as they come, the 8-bit grey that feature detectors take, and 8 bits of RGB."""
+"""Image files as arrays and back; the 8-bit grey that feature detectors take, and 8 bits of RGB."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from rectbench.errors import InvalidInput
+from rectbench.errors import InvalidInput, Unavailable
 from rectbench.types import Images
 
 Grey = NDArray[np.uint8]
@@ -81,19 +81,43 @@ def read_image(path: str | Path) -> NDArray[np.generic]:
     Depths that `cv2.remap` does not take are made the next wider one. Orientation tags are ignored: a
     calibration is one of the sensor's own rows and columns. Raises InvalidInput for what is no image.
     """
-    path = Path(path)
-    if not path.is_file():
+    image = _swapped(_opened(path, cv2.IMREAD_UNCHANGED))
+    return np.ascontiguousarray(image.astype(_WIDER.get(image.dtype.name, image.dtype), copy=False))
+
+
+def read_colours(path: str | Path) -> Rgb:
+    """An image file as 8 bits of RGB [H, W, 3], upright by its orientation tag; InvalidInput for no image."""
+    return np.ascontiguousarray(_swapped(_opened(path, cv2.IMREAD_COLOR)))
+
+
+def _opened(path: str | Path, how: int) -> NDArray[Any]:
+    """An image file as OpenCV reads it under this flag."""
+    if not Path(path).is_file():
         raise InvalidInput(f"{path}: no such image")
     try:
         with _quiet_opencv():
-            image = cv2.imread(str(path), cv2.IMREAD_UNCHANGED)
+            image: NDArray[Any] | None = cv2.imread(str(path), how)
     except cv2.error as error:  # a header that promises more pixels than OpenCV takes
         raise InvalidInput(f"{path}: OpenCV refuses it ({' '.join(str(error.err).split())})") from None
     if image is None:
         raise InvalidInput(f"{path}: not an image that OpenCV can read")
-    if image.ndim == 3 and image.shape[2] >= 3:
-        image = image[..., [2, 1, 0, 3][: image.shape[2]]]
-    return np.ascontiguousarray(image.astype(_WIDER.get(image.dtype, image.dtype), copy=False))
+    return image
+
+
+def encoded(image: NDArray[np.generic], suffix: str = ".png") -> bytes:
+    """An image [H, W], or [H, W, 3 or 4] in RGB(A), as the content of an image file of this suffix.
+
+    Raises Unavailable where OpenCV cannot write one of this depth.
+    """
+    ok, data = cv2.imencode(suffix, np.ascontiguousarray(_swapped(image)))
+    if not ok:
+        raise Unavailable(f"OpenCV cannot encode a {suffix} of {image.dtype}")
+    return bytes(data)
+
+
+def _swapped(image: NDArray[Any]) -> NDArray[Any]:
+    """The image in OpenCV's order of channels, BGR(A), or back in RGB(A)."""
+    return image[..., [2, 1, 0, 3][: image.shape[2]]] if image.ndim == 3 and image.shape[2] >= 3 else image
 
 
 @contextmanager
@@ -106,13 +130,4 @@ def _quiet_opencv() -> Iterator[None]:
         cv2.utils.logging.setLogLevel(level)
 
 
-_WIDER: dict[np.dtype[Any], np.dtype[Any]] = {
-    np.dtype(narrow): np.dtype(wide)
-    for narrow, wide in (
-        ("bool", "uint8"),
-        ("int8", "int16"),
-        ("int32", "float64"),
-        ("uint32", "float64"),
-        ("float16", "float32"),
-    )
-}
+_WIDER = {"bool": "uint8", "int8": "int16", "int32": "float64", "uint32": "float64", "float16": "float32"}

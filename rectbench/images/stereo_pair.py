@@ -5,14 +5,23 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
+from rectbench.images.reading import encoded, read_colours
 from rectbench.rigs.rig import Rig
 
 Image = NDArray[np.uint8]
+
+
+def check_size(image: NDArray[np.generic], camera: Camera, name: str, whose: str) -> None:
+    """Raise InvalidInput, which calls the image and the camera so, where it has not the camera's size."""
+    if image.ndim not in (2, 3) or image.shape[1::-1] != camera.size:
+        size = "x".join(map(str, image.shape[1::-1]))
+        expected = f"{camera.width}x{camera.height}, the size of {whose}"
+        raise InvalidInput(f"{name} is {size} px; expected {expected}")
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,7 +36,7 @@ class StereoPair:
     >>> rb.StereoPair(black, black).check(rb.load_rig("t265"))
     Traceback (most recent call last):
     ...
-    rectbench.errors.InvalidInput: left image is 640x480; expected 848x800, the size of rig t265's camera
+    rectbench.errors.InvalidInput: left image is 640x480 px; expected 848x800, the size of rig t265's camera
     """
 
     left: Image
@@ -43,20 +52,14 @@ class StereoPair:
     def check(self, rig: Rig) -> None:
         """Raise InvalidInput where an image's size is not its camera's."""
         for side in ("left", "right"):
-            height, width = getattr(self, side).shape[:2]
-            camera = getattr(rig, side)
-            if (width, height) != camera.size:
-                raise InvalidInput(
-                    f"{side} image is {width}x{height}; expected {camera.width}x{camera.height}, "
-                    f"the size of rig {rig.name}'s camera"
-                )
+            check_size(getattr(self, side), getattr(rig, side), f"{side} image", f"rig {rig.name}'s camera")
 
     def save(self, folder: str | Path) -> None:
         """Write left.png and right.png into a folder, which is made where it does not exist."""
         folder = Path(folder)
         folder.mkdir(parents=True, exist_ok=True)
         for side in ("left", "right"):
-            cv2.imwrite(str(folder / f"{side}.png"), cv2.cvtColor(getattr(self, side), cv2.COLOR_RGB2BGR))
+            (folder / f"{side}.png").write_bytes(encoded(getattr(self, side)))
 
     @classmethod
     def load(cls, folder: str | Path, rig: Rig | None = None) -> StereoPair:
@@ -66,17 +69,7 @@ class StereoPair:
     @classmethod
     def read(cls, left: str | Path, right: str | Path, rig: Rig | None = None) -> StereoPair:
         """Read two image files; with a rig, their sizes are checked against it."""
-        pair = cls(_read(Path(left)), _read(Path(right)))
+        pair = cls(read_colours(left), read_colours(right))
         if rig is not None:
             pair.check(rig)
         return pair
-
-
-def _read(path: Path) -> Image:
-    if not path.is_file():
-        raise InvalidInput(f"{path}: no such image")
-    image = cv2.imread(str(path), cv2.IMREAD_COLOR)
-    if image is None:
-        raise InvalidInput(f"{path}: not an image that OpenCV can read")
-    colours: Image = np.asarray(cv2.cvtColor(image, cv2.COLOR_BGR2RGB), dtype=np.uint8)
-    return colours

@@ -35,29 +35,12 @@ def estimate_inputs(image_inputs: Inputs) -> Inputs:
 
 def save_estimate(estimate: PoseEstimate, path: Path) -> None:
     """Write an estimate as `.npz`."""
-    np.savez(
-        path,
-        R_right_left=estimate.R_right_left,
-        direction_right_left=estimate.direction_right_left,
-        covariance=estimate.covariance,
-        inliers=np.stack(estimate.inliers),
-        given=estimate.given,
-        noise_px=estimate.noise_px,
-        motion=estimate.motion,
-        seconds=json.dumps(dict(estimate.seconds)),
-    )
+    np.savez(path, **{**vars(estimate), "seconds": json.dumps(dict(estimate.seconds))})
 
 
 def load_estimate(path: Path) -> PoseEstimate:
     """The estimate that `save_estimate` wrote, to the last bit."""
     with np.load(path, allow_pickle=False) as stored:
-        return PoseEstimate(
-            R_right_left=stored["R_right_left"],
-            direction_right_left=stored["direction_right_left"],
-            covariance=stored["covariance"],
-            inliers=Matches(*stored["inliers"]),
-            given=int(stored["given"]),
-            noise_px=float(stored["noise_px"]),
-            motion="forward" if stored["motion"] == "forward" else "sideways",
-            seconds=json.loads(str(stored["seconds"])),
-        )
+        numbers = {name: value if value.ndim else value.item() for name, value in stored.items()}
+    kept = {"inliers": Matches(*numbers["inliers"]), "seconds": json.loads(numbers["seconds"])}
+    return PoseEstimate(**{**numbers, **kept})

@@ -6,8 +6,9 @@ import json
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
+from typing import ClassVar
 
-from rectbench.errors import PoseNotFound
+from rectbench.errors import InvalidInput, PoseNotFound
 from rectbench.images.stereo_pair import StereoPair
 from rectbench.matching import BoardMatches, PoseEstimate, board_matches
 from rectbench.metrics.timing import warm_seconds
@@ -36,6 +37,8 @@ class Pair(ABC):
 
     spec: RenderedSpec | PhotographedSpec
     store: Store
+    knows_truth: ClassVar[bool]
+    """Whether anybody knows the truth about the pair."""
 
     @cached_property
     @abstractmethod
@@ -53,24 +56,19 @@ class Pair(ABC):
         """All that shapes the images."""
 
     @property
-    @abstractmethod
     def is_made(self) -> bool:
         """Whether all that is asked of the pair is there, its files unchecked."""
+        return True
 
     @cached_property
     @abstractmethod
     def images(self) -> StereoPair:
         """The two images. Raises InvalidInput for files that are no images of this rig."""
 
-    @property
-    @abstractmethod
-    def knows_truth(self) -> bool:
-        """Whether anybody knows the truth about the pair."""
-
     @cached_property
-    @abstractmethod
     def truth(self) -> Truth:
         """Depth, visibility and correspondences. Raises InvalidInput for photographs."""
+        raise InvalidInput(f"nobody knows the truth about the photographs of {self.spec.scene}")
 
     @abstractmethod
     def shown_matches(self) -> Matches:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
@@ -10,20 +9,18 @@ from pathlib import Path
 
 import numpy as np
 
-from rectbench.errors import InvalidInput, PoseNotFound
+from rectbench.errors import PoseNotFound
 from rectbench.images.reading import read_images, rgb8
 from rectbench.images.stereo_pair import StereoPair
 from rectbench.matching import agreeing_matches
+from rectbench.pairs.estimating import ESTIMATING_PACKAGES
 from rectbench.pairs.finding.calibrations import Calibration
 from rectbench.pairs.pair import Pair
 from rectbench.pairs.rig_numbers import rig_numbers
 from rectbench.pairs.spec import CALIBRATED, PhotographedSpec
-from rectbench.rendering.truth import Truth
 from rectbench.rigs import Rig
 from rectbench.store.keys import Inputs, code_digest, file_digest, versions
 from rectbench.types import Images, Matches
-
-READING_PACKAGES = ("numpy", "scipy", "opencv-contrib-python-headless")
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,19 +28,13 @@ class PhotographedPair(Pair):
     """Two image files of a calibrated rig, about which nobody knows the truth."""
 
     spec: PhotographedSpec
+    knows_truth = False
 
     @cached_property
     def rig(self) -> Rig:
         spec, files = self.spec, tuple(map(Path, self.spec.calibration))
-        return Calibration(
-            spec.rig,
-            files,
-            files[0].parent,
-            spec.size,
-            spec.unit,
-            max_angle_deg=spec.max_angle_deg,
-            cameras=spec.cameras,
-        ).rig()
+        how = spec.model_dump(include={"size", "unit", "max_angle_deg", "cameras"})
+        return Calibration(spec.rig, files, files[0].parent, **how).rig()
 
     @cached_property
     def inputs(self) -> Inputs:
@@ -52,17 +43,13 @@ class PhotographedPair(Pair):
             "rig": rig_numbers(self.rig),
             "seed": self.spec.seed,
             "code": code_digest(__name__),
-            "versions": dict(versions(*READING_PACKAGES)),
+            "versions": dict(versions(*ESTIMATING_PACKAGES)),
         }
 
     @cached_property
     def image_inputs(self) -> Inputs:
         """The bytes of the files are among them: an edited image is another one."""
         return {**self.inputs, "images": [_digest(self.spec.left), _digest(self.spec.right)]}
-
-    @property
-    def is_made(self) -> bool:
-        return True
 
     @cached_property
     def images(self) -> StereoPair:
@@ -71,25 +58,14 @@ class PhotographedPair(Pair):
         photographs.check(self.rig)
         return photographs
 
-    @property
-    def knows_truth(self) -> bool:
-        return False
-
-    @cached_property
-    def truth(self) -> Truth:
-        raise InvalidInput(f"nobody knows the truth about the photographs of {self.spec.scene}")
-
     def shown_matches(self) -> Matches:
         """The matches that agree on a pose, and the corners of a board, as far as there are any."""
-        found = list(self._found())
-        sides = zip(*found, strict=True) if found else ([np.empty((0, 2))], [np.empty((0, 2))])
-        return Matches(*(np.concatenate(side) for side in sides))
-
-    def _found(self) -> Iterator[Matches]:
+        found = [Matches(np.empty((0, 2)), np.empty((0, 2)))]
         if self.board is not None:
-            yield self.board.matches
+            found.append(self.board.matches)
         with suppress(PoseNotFound):
-            yield self._agreeing
+            found.append(self._agreeing)
+        return Matches(*map(np.concatenate, zip(*found, strict=True)))
 
     def features(self, *, by_estimate: bool) -> Matches:
         """Those that agree on the pose in the images, whatever the calibration says: it may be wrong."""

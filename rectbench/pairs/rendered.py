@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 
+import numpy as np
+
 from rectbench.calibrations import load_rig
 from rectbench.errors import Unavailable
 from rectbench.images.stereo_pair import StereoPair
-from rectbench.pairs.features import scored_features
+from rectbench.matching import match_features
+from rectbench.matching.pose.consistent import SCORING_PIXELS
 from rectbench.pairs.pair import Pair
 from rectbench.pairs.rendering import IMAGES, TRUTH, TRUTH_FILE, Studio, placed, truth_inputs
 from rectbench.pairs.spec import ESTIMATED, RenderedSpec
@@ -17,9 +21,12 @@ from rectbench.rendering.truth import Truth
 from rectbench.rigs import Rig
 from rectbench.store.keys import Inputs
 from rectbench.types import Matches
+from rectbench.warps import centre_resolution_px
 
 SHOWN_MATCHES = 2000
 """True correspondences that pictures choose from."""
+FARTHEST_PX = 3.0
+"""A feature match farther from its epipolar plane is a wrong match, not an imprecise one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,6 +35,7 @@ class RenderedPair(Pair):
 
     spec: RenderedSpec
     studio: Studio = field(default_factory=Studio)
+    knows_truth = True
 
     @cached_property
     def rig(self) -> Rig:
@@ -44,26 +52,19 @@ class RenderedPair(Pair):
 
     @property
     def is_made(self) -> bool:
-        wants_truth, wants_images = self.spec.truth, self.spec.images
-        return (not wants_truth or self.store.has(TRUTH, self.inputs)) and (
-            not wants_images or self.store.has(IMAGES, self.image_inputs)
-        )
+        return all(self.store.has(kind, self._inputs_of[kind]) for kind in self.spec.demands)
 
     def make(self) -> None:
         """Render what is asked of the pair and the store lacks; one process at a time makes one pair."""
-        self._make(truth=self.spec.truth, images=self.spec.images)
+        self._make(self.spec.demands)
 
     @cached_property
     def images(self) -> StereoPair:
-        return StereoPair.load(self._folder(IMAGES, self.image_inputs))
-
-    @property
-    def knows_truth(self) -> bool:
-        return True
+        return StereoPair.load(self._folder(IMAGES))
 
     @cached_property
     def truth(self) -> Truth:
-        return Truth.load(self._folder(TRUTH, self.inputs) / TRUTH_FILE)
+        return Truth.load(self._folder(TRUTH) / TRUTH_FILE)
 
     def shown_matches(self) -> Matches:
         return Matches(*self.truth.matches(SHOWN_MATCHES, seed=0))
@@ -89,27 +90,47 @@ class RenderedPair(Pair):
         """Nothing: what the store lacks is rendered."""
 
     def forget(self) -> None:
-        self.store.drop(self.store.place(TRUTH, self.inputs))
-        self.store.drop(self.store.place(IMAGES, self.image_inputs))
+        for kind, inputs in self._inputs_of.items():
+            self.store.drop(self.store.place(kind, inputs))
 
-    def _folder(self, kind: str, inputs: Inputs) -> Path:
+    @property
+    def _inputs_of(self) -> dict[str, Inputs]:
+        """What shapes each kind of object that the store keeps of the pair."""
+        return {TRUTH: self.inputs, IMAGES: self.image_inputs}
+
+    def _folder(self, kind: str) -> Path:
+        inputs = self._inputs_of[kind]
         folder = self.store.read(kind, inputs)
         if folder is None:
-            self._make(truth=kind == TRUTH, images=kind == IMAGES)
+            self._make([kind])
             folder = self.store.read(kind, inputs)
         if folder is None:
             raise Unavailable(f"the store at {self.store.root} does not keep what is written to it")
         return folder
 
-    def _make(self, *, truth: bool, images: bool) -> None:
+    def _make(self, kinds: Collection[str]) -> None:
         with self.store.making(TRUTH, self.inputs):
-            lacks_truth = truth and self.store.read(TRUTH, self.inputs) is None
-            lacks_images = images and self.store.read(IMAGES, self.image_inputs) is None
-            if lacks_truth or lacks_images:
-                self.studio.render(
-                    self.spec,
-                    self.rig,
-                    self.store,
-                    truth=self.inputs if lacks_truth else None,
-                    images=self.image_inputs if lacks_images else None,
-                )
+            lacking = {
+                kind: inputs
+                for kind, inputs in self._inputs_of.items()
+                if kind in kinds and self.store.read(kind, inputs) is None
+            }
+            if lacking:
+                self.studio.render(self.spec, self.rig, self.store, lacking)
+
+
+def scored_features(images: StereoPair, rig: Rig) -> Matches:
+    """SIFT matches [N, 2] each within 3 px of the rig's epipolar planes.
+
+    The distance is the angle between the right ray and the plane of the left one, times the pixels
+    per radian at the centre. A rectifier never sees these matches.
+    """
+    found = match_features(images.left, images.right, working_pixels=SCORING_PIXELS)
+    rays_left, ok_left = rig.left.unproject(found.left)
+    rays_right, ok_right = rig.right.unproject(found.right)
+    normals = rays_left @ rig.essential_matrix.T
+    with np.errstate(invalid="ignore", divide="ignore"):
+        sines = (rays_right * normals).sum(axis=-1) / np.linalg.norm(normals, axis=-1)
+        near = np.abs(np.arcsin(np.clip(sines, -1, 1))) * centre_resolution_px(rig) <= FARTHEST_PX
+    kept = ok_left & ok_right & near
+    return Matches(found.left[kept], found.right[kept])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import sys
+from collections.abc import Mapping
 from contextlib import suppress
 from typing import TYPE_CHECKING
 
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     from rectbench.rendering.pair import Stage
 
 TRUTH, IMAGES, TRUTH_FILE = "truth", "images", "truth.npz"
-"""Kinds of the store, and the file of the one."""
+"""Kinds of the store, as `RenderedSpec.demands` calls them, and the file of the one."""
 RENDERING_PACKAGES = ("numpy", "scipy", "opencv-contrib-python-headless", "mitsuba", "drjit")
 
 
@@ -74,17 +75,15 @@ class Studio:
             self._scene, self._stage = (scene_source, seed, quality), Stage.of(world, quality)
         return self._stage
 
-    def render(
-        self, spec: RenderedSpec, rig: Rig, store: Store, *, truth: Inputs | None, images: Inputs | None
-    ) -> None:
-        """Render truth and images of the placed `rig` into the store under these inputs; None: neither."""
+    def render(self, spec: RenderedSpec, rig: Rig, store: Store, wanted: Mapping[str, Inputs]) -> None:
+        """Render the wanted kinds, truth or images, of the placed `rig` into the store under their inputs."""
         stage = self.stage(spec.scene_source, spec.seed, spec.quality)
-        if truth is not None:
+        if TRUTH in wanted:
             exact = stage.survey(rig)
-            store.write(TRUTH, truth, lambda folder: exact.save(folder / TRUTH_FILE, derived=False))
-        if images is not None:
+            store.write(TRUTH, wanted[TRUTH], lambda folder: exact.save(folder / TRUTH_FILE, derived=False))
+        if IMAGES in wanted:
             noise = render_seed(spec.scene, spec.rig, spec.motion, spec.seed)
-            store.write(IMAGES, images, stage.photograph(rig, seed=noise, spp=spec.spp).save)
+            store.write(IMAGES, wanted[IMAGES], stage.photograph(rig, seed=noise, spp=spec.spp).save)
         give_memory_back()
 
 

@@ -5,8 +5,7 @@ from pathlib import Path
 import pytest
 
 import rectbench as rb
-from rectbench.applications.requests.config_file import overlaid
-from rectbench.applications.requests.running import RunRequest
+from rectbench.applications.requests.running import RunRequest, overlaid
 from rectbench.applications.requests.words import option_sets_in
 
 

@@ -104,7 +104,7 @@ def test_images_of_another_size_are_rows_with_the_reason(table: pd.DataFrame) ->
     thumbs = table[table.scene == "thumb"]
     assert len(thumbs) == 4
     assert (thumbs.status == "invalid").all()
-    assert thumbs.reason.str.contains("left image is 240x160; expected 480x320").all()
+    assert thumbs.reason.str.contains("left image is 240x160 px; expected 480x320").all()
 
 
 def test_the_run_tells_its_folder_its_board_and_what_is_left_out(run_dir: Path, folder: Path) -> None:

@@ -223,9 +223,9 @@ def test_a_manifest_states_what_names_do_not(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("manifest", "said"),
     [
-        ({"pairs": [{"left": "a.png"}]}, "pairs.0.right: Field required"),
+        ({"pairs": [{}]}, "pairs.0.left: Field required"),
         ({"rig": {}}, "rig: Extra inputs are not permitted"),
-        ({"rigs": {"a": {"files": ["gone.yaml"]}}}, "rigs.a.files: gone.yaml: no such file"),
+        ({"rigs": {"a": {"files": ["gone.yaml"]}}}, "rigs.a.files.0: gone.yaml: no such file"),
         (["a"], "the file: Input should be a valid dictionary"),
     ],
 )

@@ -280,7 +280,7 @@ def test_images_that_are_not_the_cameras_are_refused(rig: Rig, tmp_path: Path) -
     small = np.zeros((10, 20, 3), np.uint8)
     cv2.imwrite(str(tmp_path / "left.png"), small)
     cv2.imwrite(str(tmp_path / "right.png"), small)
-    with pytest.raises(InvalidInput, match="left image is 20x10; expected 96x72"):
+    with pytest.raises(InvalidInput, match="left image is 20x10 px; expected 96x72"):
         StereoPair.load(tmp_path, rig)
     (tmp_path / "right.png").write_text("no image")
     with pytest.raises(InvalidInput, match=r"right.png: not an image"):

@@ -15,23 +15,16 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
-from rectbench.applications.calibrated import rig_of
-from rectbench.applications.export.pair_files import (
-    calibration_files,
-    image_files,
-    pair_facts,
-    rectified_files,
-    truth_files,
-)
+from rectbench.applications.export import pair_files
 from rectbench.applications.export.readme import readme_text
-from rectbench.applications.render import scene_source
+from rectbench.applications.one_rig import rig_of
 from rectbench.applications.requests.rendering import ExportRequest
 from rectbench.errors import InvalidInput
 from rectbench.pairs.rendering import RENDERING_PACKAGES, Studio, placed, render_seed
 from rectbench.pairs.rig_numbers import rig_numbers
 from rectbench.plugins.fitting import checked_options, fit
 from rectbench.plugins.rectifier import METHODS, Options, Rectifier, pose_problem
-from rectbench.plugins.scene import SCENES
+from rectbench.plugins.scene import SCENES, Scene
 from rectbench.progress import progress_for
 from rectbench.registry import Plugin, registry
 from rectbench.rigs import Rig
@@ -49,47 +42,44 @@ class _Export:
 
     request: ExportRequest
     rig: Rig
+    scene: Plugin[Scene]
+    method: Plugin[Rectifier]
+    options: Options
+    """The method's, those not given at their defaults."""
+
+    @staticmethod
+    def of(request: ExportRequest) -> _Export:
+        """Raises InvalidInput for a method that works from matches, whose rows are not exact."""
+        rig, scene = rig_of(request), registry(SCENES).get(request.scene)
+        method = registry(METHODS).get(request.method)
+        if "pose" not in method.value.needs:
+            raise InvalidInput(
+                f"{method.name} works from matches, so its rows do not agree exactly; "
+                "expected a method that works from the calibrated pose"
+            )
+        return _Export(request, rig, scene, method, checked_options(method, request.options))
 
     def settings(self) -> dict[str, Any]:
         """All that shapes the files of a pair, but for its seed, as JSON."""
-        scene, method = registry(SCENES).get(self.request.scene), self.plugin()
         return {
-            "scene": scene.name,
-            "scene_source": scene.digest,
+            "scene": self.scene.name,
+            "scene_source": self.scene.digest,
             "rig": rig_numbers(self.rig),
-            "motion": self.request.motion,
-            "image_width": self.request.image_width,
-            "quality": self.request.quality,
-            "spp": self.request.spp,
-            "method": method.name,
-            "method_source": method.digest,
-            "options": self.checked_options().model_dump(mode="json"),
+            **self.request.model_dump(include={"motion", "image_width", "quality", "spp"}),
+            "method": self.method.name,
+            "method_source": self.method.digest,
+            "options": self.options.model_dump(mode="json"),
             "code": code_digest(__name__),
             "versions": dict(versions("rectbench", *RENDERING_PACKAGES)),
         }
 
-    def plugin(self) -> Plugin[Rectifier]:
-        """The method; raises InvalidInput for one that works from matches, whose rows are not exact."""
-        plugin = registry(METHODS).get(self.request.method)
-        if "pose" not in plugin.value.needs:
-            raise InvalidInput(
-                f"{plugin.name} works from matches, so its rows do not agree exactly; "
-                "expected a method that works from the calibrated pose"
-            )
-        return plugin
-
-    def checked_options(self) -> Options:
-        """The method's options, those not given at their defaults."""
-        return checked_options(self.plugin(), self.request.options)
-
-    def rig_of(self, seed: int) -> Rig:
-        """The true rig of a seed's pair."""
-        scene, request = registry(SCENES).get(self.request.scene).name, self.request
-        return placed(self.rig, scene, request.motion, seed, request.image_width)
+    def true_rig(self, seed: int) -> Rig:
+        """That of a seed's pair."""
+        return placed(self.rig, self.scene.name, self.request.motion, seed, self.request.image_width)
 
     def rectification(self, seed: int) -> Rectification:
         """The rectification of that rig."""
-        return fit(self.plugin(), pose_problem(self.rig_of(seed), seed=seed), self.checked_options())
+        return fit(self.method, pose_problem(self.true_rig(seed), seed=seed), self.options)
 
 
 @dataclass(frozen=True)
@@ -112,11 +102,12 @@ def export_dataset(request: ExportRequest, progress: bool | None = None) -> Expo
     """
     out, seeds = request.out, list(dict.fromkeys(request.seeds))
     check_writable(out)
-    export = _Export(request, rig_of(request))
-    export.rig_of(seeds[0])  # a motion that does not exist is no other setting
+    export = _Export.of(request)
+    placed(
+        export.rig, export.scene.name, request.motion, seeds[0], None
+    )  # a wrong motion is no other setting
     settings = export.settings()
-    mark = digest(settings)
-    found = _manifests(out)
+    mark, found = digest(settings), _manifests(out)
     _check_same(out, found, mark)
     whole = {seed for seed in seeds if _is_whole(out, found.get(_name(seed)))}
     missing = [seed for seed in seeds if seed not in whole]
@@ -141,16 +132,15 @@ def _write_pair(export: _Export, seed: int, mark: str, out: Path) -> dict[str, A
     """Render and write a pair; its manifest, which is written last."""
     rect = export.rectification(seed)
     request, name = export.request, _name(seed)
-    scene = registry(SCENES).get(request.scene).name
-    stage = Studio().stage(scene_source(request.scene), seed, request.quality)
+    stage = Studio().stage(request.scene, seed, request.quality)
     truth, rectified = stage.survey(rect.rig), stage.survey_rectified(rect)
-    noise = render_seed(scene, export.rig.name, request.motion, seed)
+    noise = render_seed(export.scene.name, export.rig.name, request.motion, seed)
     images = stage.photograph(rect.rig, seed=noise, spp=request.spp)
-    calibrations, refused = calibration_files(rect.rig, name)
+    calibrations, refused = pair_files.calibration_files(rect.rig, name)
     contents = {
-        **image_files(images, name),
-        **truth_files(truth, name),
-        **rectified_files(images, rectified, export.plugin().name, name),
+        **pair_files.image_files(images, name),
+        **pair_files.truth_files(truth, name),
+        **pair_files.rectified_files(images, rectified, export.method.name, name),
         **calibrations,
     }
     for path, content in contents.items():
@@ -159,7 +149,7 @@ def _write_pair(export: _Export, seed: int, mark: str, out: Path) -> dict[str, A
         "name": name,
         "seed": seed,
         "settings": mark,
-        **pair_facts(truth, rectified),
+        **pair_files.pair_facts(truth, rectified),
         "calibrations_not_written": refused,
         "files": {path: sha256(content).hexdigest() for path, content in sorted(contents.items())},
     }

@@ -5,11 +5,10 @@ from __future__ import annotations
 import struct
 from typing import Any
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from rectbench.errors import Unavailable
+from rectbench.images.reading import encoded
 from rectbench.rendering.variant import mitsuba
 
 FloatMap = NDArray[np.floating[Any]]
@@ -23,19 +22,14 @@ FLO_TAG = b"PIEH"
 """The float 202021.25, with which every .flo begins."""
 
 
-def png(image: NDArray[Any]) -> bytes:
-    """An 8 or 16 bit PNG; [H, W, 3] is RGB."""
-    return _encoded(".png", image[..., ::-1] if image.ndim == 3 else image)
-
-
 def mask_png(mask: NDArray[np.bool_]) -> bytes:
     """A PNG with 255 where the mask holds, else 0."""
-    return png(255 * mask.astype(np.uint8))
+    return encoded(255 * mask.astype(np.uint8))
 
 
 def pfm(values: FloatMap) -> bytes:
     """A little-endian PFM [H, W] in float32, its rows from the bottom up, as the format has them."""
-    return _encoded(".pfm", values.astype(np.float32))
+    return encoded(values.astype(np.float32), ".pfm")
 
 
 def exr(values: FloatMap) -> bytes:
@@ -49,12 +43,12 @@ def exr(values: FloatMap) -> bytes:
 
 def millimetres_png(metres: FloatMap) -> bytes:
     """A 16 bit PNG of millimetres; 0 where there is nothing, or more than 65.535 m."""
-    return png(_whole(metres * 1000.0))
+    return encoded(_whole(metres * 1000.0))
 
 
 def kitti_png(disparity_px: FloatMap) -> bytes:
     """KITTI's 16 bit PNG of 256 steps a pixel; 0 where there is none, or one outside (0, 256) px."""
-    return png(_whole(disparity_px * KITTI_STEPS))
+    return encoded(_whole(disparity_px * KITTI_STEPS))
 
 
 def fits_kitti(disparity_px: FloatMap) -> NDArray[np.bool_]:
@@ -74,10 +68,3 @@ def _whole(values: FloatMap) -> NDArray[np.uint16]:
     rounded = np.rint(np.nan_to_num(values, nan=0.0, posinf=0.0, neginf=0.0))
     rounded[(rounded < 0) | (rounded > LARGEST_16_BIT)] = 0
     return rounded.astype(np.uint16)
-
-
-def _encoded(suffix: str, image: NDArray[Any]) -> bytes:
-    ok, data = cv2.imencode(suffix, np.ascontiguousarray(image))
-    if not ok:
-        raise Unavailable(f"OpenCV cannot encode a {suffix} of {image.dtype}")
-    return bytes(data)

@@ -10,6 +10,7 @@ from rectbench.applications.export import file_formats as encode
 from rectbench.applications.rectification_files import SIDES, Files, description_files
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
+from rectbench.images.reading import encoded
 from rectbench.images.stereo_pair import StereoPair
 from rectbench.rendering.rectified_truth import RectifiedTruth
 from rectbench.rendering.truth import Truth
@@ -25,7 +26,7 @@ WIDEST_Z_DEG = 80.0
 
 def image_files(images: StereoPair, name: str) -> Files:
     """The rendered images: `left/NAME.png`, `right/NAME.png`."""
-    return {f"{side}/{name}.png": encode.png(getattr(images, side)) for side in SIDES}
+    return {f"{side}/{name}.png": encoded(getattr(images, side)) for side in SIDES}
 
 
 def truth_files(truth: Truth, name: str) -> Files:
@@ -46,7 +47,7 @@ def rectified_files(images: StereoPair, truth: RectifiedTruth, method: str, name
     """The rectified images, their masks and description, and the disparity of the left one."""
     rect, files = truth.rect, {}
     for side, image in zip(SIDES, rect.remap(images.left, images.right), strict=True):
-        files[f"rectified/{side}/{name}.png"] = encode.png(image)
+        files[f"rectified/{side}/{name}.png"] = encoded(image)
         files[f"rectified/mask_{side}/{name}.png"] = encode.mask_png(rect.valid(side))
     disparity = shown_disparity(truth)
     matched = np.where(truth.matched, disparity, np.nan)

@@ -13,8 +13,13 @@ import pandas as pd
 
 from rectbench.applications.choose_method import Choice
 from rectbench.applications.rectification_files import Files
-from rectbench.metrics import RowError
+from rectbench.errors import InvalidInput, PoseNotFound
+from rectbench.matching.boards.corners import board_matches
+from rectbench.matching.pose.consistent import consistent_matches
+from rectbench.metrics import RowError, row_error
 from rectbench.pairs.finding.names import FilePair, LeftOut
+from rectbench.rigs import Rig
+from rectbench.types import Images, Matches
 from rectbench.warps import Rectification
 
 ELSEWHERE_PX = 5.0
@@ -38,10 +43,39 @@ class PairResult:
     @property
     def columns(self) -> dict[str, Any]:
         """The row of this pair in `pairs.csv`."""
-        status = "left out" if self.reason else "ok"
-        files = {"left": str(self.pair.left), "right": str(self.pair.right)}
-        about = {"pair": self.pair.name, **files, "status": status, "reason": self.reason, "note": self.note}
-        return about | _row_columns("features", self.features) | _row_columns("board", self.board)
+        pair, status = self.pair, "left out" if self.reason else "ok"
+        about = {"pair": pair.name, "left": str(pair.left), "right": str(pair.right), "status": status}
+        rows = _row_columns("features", self.features) | _row_columns("board", self.board)
+        return about | {"reason": self.reason, "note": self.note} | rows
+
+
+@dataclass(frozen=True, eq=False)
+class OwnMatches:
+    """Correspondences that a pair's own images tell, without any calibrated pose."""
+
+    features: Matches | None = None
+    board: Matches | None = None
+    """Of the corners of a calibration board."""
+    note: str = ""
+
+    @staticmethod
+    def of(images: Images, rig: Rig, seed: int) -> OwnMatches:
+        found = board_matches(*images)
+        board, note = (found.matches, found.kind) if found else (None, "")
+        try:
+            return OwnMatches(consistent_matches(rig.left, rig.right, images, seed=seed), board, note)
+        except (PoseNotFound, InvalidInput) as reason:
+            return OwnMatches(None, board, note or str(reason))
+
+    @property
+    def best(self) -> Matches | None:
+        """The board's, where there is one."""
+        return self.board or self.features
+
+    def measured(self, pair: FilePair, rect: Rectification) -> PairResult:
+        """The pair with the row errors of these correspondences."""
+        features, board = (m and row_error(rect, *m) for m in (self.features, self.board))
+        return PairResult(pair, features=features, board=board, note=self.note)
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,12 +107,9 @@ class RectifiedImages:
         rows: dict[str, float] = {}
         for kind in ("board", "features"):
             found = [error for result in self.pairs if (error := getattr(result, kind)) is not None]
-            pooled = RowError(
-                np.concatenate([error.rectified_px for error in found] or [np.empty(0)]),
-                np.concatenate([error.source_px for error in found] or [np.empty(0)]),
-            )
-            if np.isfinite(pooled.rectified_px).any():
-                rows |= _row_columns(kind, pooled)
+            if any(np.isfinite(error.rectified_px).any() for error in found):
+                every = ((error.rectified_px, error.source_px) for error in found)
+                rows |= _row_columns(kind, RowError(*map(np.concatenate, zip(*every, strict=True))))
         return rows
 
     @property

@@ -10,26 +10,22 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from rectbench.applications.calibrated import rig_of
+from rectbench.applications import rectification_files as encode
 from rectbench.applications.choose_method import Choice, best_method, uncalibrated_methods
-from rectbench.applications.photographs.own_matches import OwnMatches
-from rectbench.applications.photographs.rectified import PairResult, RectifiedImages, summary_files
-from rectbench.applications.rectification_files import (
-    SIDES,
-    SUFFIXES,
-    TABLES,
-    Files,
-    description_files,
-    image_file,
-    mask_files,
-    preview_file,
+from rectbench.applications.one_rig import rig_of
+from rectbench.applications.photographs.rectified import (
+    OwnMatches,
+    PairResult,
+    RectifiedImages,
+    summary_files,
 )
+from rectbench.applications.rectification_files import SIDES, Files
 from rectbench.applications.requests.photographs import BEST, FramingRequest, RectifyRequest
 from rectbench.calibrations import holds_many
 from rectbench.errors import InvalidInput, UnknownName
 from rectbench.images.reading import read_images
+from rectbench.images.stereo_pair import check_size
 from rectbench.matching.pose.uncalibrated import uncalibrated
 from rectbench.metrics import frame_costs
 from rectbench.pairs.finding.image_pairs import image_pairs
@@ -43,8 +39,6 @@ from rectbench.types import Images, Matches
 from rectbench.warps import Framing, Rectification, framed
 from rectbench.warps.lookup.resampling import Resampler
 from rectbench.writing import check_writable, write_atomically
-
-Image = NDArray[np.generic]
 
 
 def rectify_photographs(request: RectifyRequest, progress: bool | None = None) -> RectifiedImages:
@@ -60,8 +54,8 @@ def rectify_photographs(request: RectifyRequest, progress: bool | None = None) -
     asked for can serve the rig. Nothing is written then.
     """
     for kind in request.tables:
-        if kind not in TABLES:
-            raise UnknownName("kind of tables", kind, TABLES)
+        if kind not in encode.TABLES:
+            raise UnknownName("kind of tables", kind, encode.TABLES)
     check_writable(request.out)
     found = image_pairs(request.left, request.right)
     pairs = found.pairs
@@ -81,7 +75,8 @@ def rectify_photographs(request: RectifyRequest, progress: bool | None = None) -
         unpaired=found.left_out,
     )
     contents = _rig_files(made, request)
-    contents["preview.png"] = preview_file(*_resampled(first, resamplers))
+    shown = [resample(image) for resample, image in zip(resamplers, first, strict=True)]
+    contents["preview.png"] = encode.preview_file(*shown)
     _remove_earlier(request.out, contents)
     files = _written(contents, request.out)
 
@@ -137,23 +132,17 @@ def _rectification(
 ) -> tuple[Choice | None, Rectification | None, Rectification]:
     """How it was chosen, if it was; the method's own frame, if it is another; and the one that is wanted."""
     without_calibration = request.rig is None
+    given: dict[str, Any] = {"images": images, "matches": matches, "seed": request.seed}
     if request.method == BEST:
-        choice = best_method(
-            rig,
-            framing=framing,
-            images=images,
-            matches=matches,
-            trusted=known.best,
-            methods=uncalibrated_methods() if without_calibration else None,
-            seed=request.seed,
-        )
+        methods = uncalibrated_methods() if without_calibration else None
+        choice = best_method(rig, framing=framing, trusted=known.best, methods=methods, **given)
         return choice, None, choice.rectification
     plugin = registry(METHODS).get(request.method_name)
     if without_calibration and "pose" in plugin.value.needs:
         instead = " or ".join(uncalibrated_methods())
         raise InvalidInput(f"{plugin.name} needs a calibrated rig; expected one, or the method {instead}")
     options = checked_options(plugin, request.options)
-    own = fit(plugin, pose_problem(rig, images=images, matches=matches, seed=request.seed), options)
+    own = fit(plugin, pose_problem(rig, **given), options)
     rect = framed(own, framing)
     return None, None if rect is own else own, rect
 
@@ -165,9 +154,9 @@ def _rig_files(made: RectifiedImages, request: RectifyRequest) -> Files:
         facts["chosen"] = made.choice.why
     if request.rig is None:
         facts["calibrated"] = "no: the rig below is assumed, and its baseline is 1 of an unknown unit"
-    contents = description_files(made.rectification, **facts) | mask_files(made.rectification)
+    contents = encode.description_files(made.rectification, **facts) | encode.mask_files(made.rectification)
     for kind in request.tables:
-        contents |= TABLES[kind](made.rectification)
+        contents |= encode.TABLES[kind](made.rectification)
     return contents
 
 
@@ -183,41 +172,30 @@ def _first_readable(pairs: Sequence[FilePair], rig: Rig | None = None) -> tuple[
         except InvalidInput as error:
             reasons.append(str(error))
     more = f"; and {len(reasons) - 1} more pairs cannot be used" if len(reasons) > 1 else ""
-    raise InvalidInput(
-        f"{reasons[0]}{more}" if reasons else "there are no image pairs; expected at least one"
-    )
+    raise InvalidInput(f"{reasons[0]}{more}")
 
 
 def _images_of(pair: FilePair, rig: Rig | None) -> Images:
     images = read_images(pair.left, pair.right)
-    cameras = () if rig is None else (rig.left, rig.right)
-    for path, image, camera in zip((pair.left, pair.right), images, cameras, strict=False):
-        if image.shape[1::-1] != camera.size:
-            size = "x".join(map(str, image.shape[1::-1]))
-            expected = f"{camera.width}x{camera.height}, the size of its camera"
-            raise InvalidInput(f"{path}: is {size} px; expected {expected}")
+    for path, image, camera in zip(pair.files, images, (rig.left, rig.right) if rig else (), strict=False):
+        check_size(image, camera, f"{path}:", "its camera")
     return images
 
 
 def _averaging(resamplers: Sequence[Resampler]) -> dict[str, float]:
     """Of the rectified pixels, the share that averages several source pixels; and the longest footprint."""
-    footprints = [resampler.footprints for resampler in resamplers if resampler.footprints]
-    if not footprints:
+    found = [resampler.footprints for resampler in resamplers if resampler.footprints]
+    if not found:
         return {}
-    shares = [footprint.shrunk_share for footprint in footprints]
-    longest_px = max(footprint.largest_px for footprint in footprints)
-    return {"averaged_share": float(np.mean(shares)), "longest_footprint_px": longest_px}
-
-
-def _resampled(images: Images, resamplers: Sequence[Resampler]) -> list[Image]:
-    with ThreadPoolExecutor(2) as threads:
-        return list(threads.map(lambda image, resampler: resampler(image), images, resamplers))
+    share = float(np.mean([footprints.shrunk_share for footprints in found]))
+    return {"averaged_share": share, "longest_footprint_px": max(one.largest_px for one in found)}
 
 
 def _image_files(images: Images, resamplers: Sequence[Resampler], stem: str) -> Files:
     """Both rectified images, encoded; `stem` is their path with {side} in it."""
     with ThreadPoolExecutor(2) as threads:
-        encoded = threads.map(lambda image, resampler: image_file(resampler(image)), images, resamplers)
+        rectified = threads.map(lambda image, resample: resample(image), images, resamplers)
+        encoded = threads.map(encode.image_file, rectified)
         names = (stem.format(side=side) for side in SIDES)
         return {name + suffix: data for name, (suffix, data) in zip(names, encoded, strict=True)}
 
@@ -225,8 +203,8 @@ def _image_files(images: Images, resamplers: Sequence[Resampler], stem: str) -> 
 def _refuse_overwriting(pairs: Sequence[FilePair], out: Path) -> None:
     """Raise InvalidInput where an image would be written over a photograph."""
     names = [f"{side}/{pair.name}" for pair in pairs for side in SIDES] if len(pairs) > 1 else SIDES
-    written = {(out / (name + suffix)).resolve() for name in names for suffix in SUFFIXES}
-    for photograph in (path for pair in pairs for path in (pair.left, pair.right)):
+    written = {(out / (name + suffix)).resolve() for name in names for suffix in encode.SUFFIXES}
+    for photograph in (path for pair in pairs for path in pair.files):
         if photograph.resolve() in written:
             raise InvalidInput(f"{photograph} would be overwritten; expected another folder than {out}")
 

@@ -1,2 +1,2 @@
-"""What each verb takes, stated once for Python and the command line: a model a verb. Imports errors alone,
+"""What verbs take, stated once for Python and the command line: a model a verb. Imports errors alone,
 so that `rectbench --help` is quick: no NumPy here."""

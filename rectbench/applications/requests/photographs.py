@@ -7,27 +7,22 @@ from typing import Any, Literal, Self
 
 from pydantic import model_validator
 
-from rectbench.applications.requests.request import Request, positional, word
-from rectbench.applications.requests.shared import (
+from rectbench.applications.requests import words
+from rectbench.applications.requests.request import (
     CALIBRATION,
     METHOD,
     METHOD_SEED,
     OUT,
     OptionsRequest,
     Positive,
+    Request,
     RigRequest,
     Seed,
     SeededMethodRequest,
     SizedRigRequest,
     Text,
-)
-from rectbench.applications.requests.words import (
-    angles_in,
-    crop_in,
-    distances_in,
-    focal_in,
-    size_in,
-    tables_in,
+    positional,
+    word,
 )
 from rectbench.errors import InvalidInput
 from rectbench.plugins.defaults import DEFAULT_METHOD, UNCALIBRATED_METHOD
@@ -39,30 +34,24 @@ class FramingRequest(Request):
     """What of a rectified pair is shown and how large: the fields of `Framing`."""
 
     crop: Literal["valid"] | tuple[float, float, float, float] | None = word(
-        None,
         "Show the largest rectangle in which both images are valid, or one in pixels.",
         metavar="valid|X,Y,W,H",
-        parse=crop_in,
+        parse=words.crop_in,
     )
     fov_deg: tuple[float, float] | None = word(
-        None,
-        "Show a field of view, across and down, degrees.",
-        "--fov",
-        metavar="DEGxDEG",
-        parse=angles_in,
+        "Show a field of view, across and down, degrees.", "--fov", metavar="DEGxDEG", parse=words.angles_in
     )
-    coverage: float | None = word(None, "Show this share of the source pixels, up to 1.", metavar="SHARE")
+    coverage: float | None = word("Show this share of the source pixels, up to 1.", metavar="SHARE")
     size: tuple[int, int] | None = word(
-        None, "Size of the rectified images, pixels.", metavar="WxH", parse=size_in
+        "Size of the rectified images, pixels.", metavar="WxH", parse=words.size_in
     )
     focal_px: float | Literal["source"] | None = word(
-        None,
         "Pixels per radian in the middle, or those of the source images there.",
         "--focal",
         metavar="PX|source",
-        parse=focal_in,
+        parse=words.focal_in,
     )
-    pixels: float | None = word(None, "Budget: a larger image is made smaller.", metavar="NUMBER")
+    pixels: float | None = word("Budget: a larger image is made smaller.", metavar="NUMBER")
 
 
 class RectifyRequest(FramingRequest, OptionsRequest, RigRequest):
@@ -71,30 +60,30 @@ class RectifyRequest(FramingRequest, OptionsRequest, RigRequest):
     left: Text = positional("LEFT", "The left image, folder or pattern.")
     right: Text = positional("RIGHT", "The right one.")
     rig: Any = word(
-        None,
-        f"{CALIBRATION} Without one, methods that work from matches alone.",
-        metavar="CALIB",
-        takes_rest=True,
+        f"{CALIBRATION} Without one, methods that work from matches alone.", metavar="CALIB", takes_rest=True
     )
-    out: Path = word(Path("rectified"), "Folder for what is made.", *OUT)
+    out: Path = word("Folder for what is made.", *OUT, default=Path("rectified"))
     method: Text | None = word(
-        None,
         "A method's name, or a file; or best: all that apply are measured, each showing --coverage of the "
         "source pixels (95 % where not given), and the least log distortion is chosen. "
         f"{DEFAULT_METHOD} by default, {UNCALIBRATED_METHOD} without a calibration.",
         *METHOD,
     )
-    seed: Seed = word(0, METHOD_SEED)
-    antialias: bool = word(False, "Average over a pixel's footprint where the image shrinks.")
+    seed: Seed = word(METHOD_SEED, default=0)
+    antialias: bool = word("Average over a pixel's footprint where the image shrinks.", default=False)
     tables: tuple[str, ...] = word(
-        ("npz", "opencv", "fixed"),
         "Lookup tables: npz, opencv, fixed, separated by commas; or none.",
+        default=("npz", "opencv", "fixed"),
         metavar="KINDS",
-        parse=tables_in,
+        parse=words.tables_in,
         has_commas=True,
     )
     measured_pairs: int = word(
-        5, "Measure the rows of so many pairs, spread over all.", "--measure", metavar="PAIRS", ge=0
+        "Measure the rows of so many pairs, spread over all.",
+        "--measure",
+        default=5,
+        metavar="PAIRS",
+        least=0,
     )
 
     @model_validator(mode="after")
@@ -112,15 +101,13 @@ class RectifyRequest(FramingRequest, OptionsRequest, RigRequest):
 class PoseSettings(Request):
     """How a pose is found in two photographs; what is not set is as `pose_from_images` has it."""
 
-    detector: Text = word("sift", "Of features: sift, akaze, orb or surf.")
+    detector: Text = word("Of features: sift, akaze, orb or surf.", default="sift")
     ratio: Positive | None = word(
-        None, "A match is nearer than the second best by this factor, 0.8 where not given."
+        "A match is nearer than the second best by this factor, 0.8 where not given."
     )
-    farthest: Positive | None = word(None, "No match's descriptors are farther apart than this.")
-    working_pixels: Positive | None = word(
-        None, "A larger image is made as small before features are sought."
-    )
-    seed: Seed = word(0, "Of the random samples.")
+    farthest: Positive | None = word("No match's descriptors are farther apart than this.")
+    working_pixels: Positive | None = word("A larger image is made as small before features are sought.")
+    seed: Seed = word("Of the random samples.", default=0)
 
 
 class PoseRequest(PoseSettings, RigRequest):
@@ -128,7 +115,7 @@ class PoseRequest(PoseSettings, RigRequest):
 
     left: Path = positional("LEFT", "The left image.")
     right: Path = positional("RIGHT", "The right image.")
-    out: Path | None = word(None, "Write the rig in this pose as YAML.", *OUT, metavar="FILE")
+    out: Path | None = word("Write the rig in this pose as YAML.", *OUT, metavar="FILE")
 
 
 class ReconstructRequest(SeededMethodRequest, RigRequest):
@@ -136,10 +123,10 @@ class ReconstructRequest(SeededMethodRequest, RigRequest):
 
     left: Path = positional("LEFT", "The left image.")
     right: Path = positional("RIGHT", "The right image.")
-    out: Path = word(Path("reconstructed"), "Folder for what is made.", *OUT)
-    matcher: str = word("sgbm", "The dense matcher: sgbm, sgbm-5way, sgbm-8way or bm.")
-    nearest_baselines: float = word(4.0, "Nothing nearer is sought, in multiples of the baseline.")
-    pixels: float = word(1e6, "A rectified image of more pixels is made smaller first.")
+    out: Path = word("Folder for what is made.", *OUT, default=Path("reconstructed"))
+    matcher: str = word("The dense matcher: sgbm, sgbm-5way, sgbm-8way or bm.", default="sgbm")
+    nearest_baselines: float = word("Nothing nearer is sought, in multiples of the baseline.", default=4.0)
+    pixels: float = word("A rectified image of more pixels is made smaller first.", default=1e6)
 
 
 class UncertaintyRequest(SeededMethodRequest, SizedRigRequest):
@@ -148,27 +135,24 @@ class UncertaintyRequest(SeededMethodRequest, SizedRigRequest):
     left: Path | None = positional("LEFT", "The left image.", None)
     right: Path | None = positional("RIGHT", "The right image.", None)
     covariance: list[str] = word(
-        [],
         "How sure the calibration is: YAML with sigmas or a covariance, Kalibr's results-cam.txt, or "
         "OpenCV's standard deviations, a file a camera, left first.",
+        default=[],
         metavar="FILE",
     )
-    rotation_deg: float | None = word(None, "σ of the right camera's rotation, its size over all axes.", ge=0)
-    direction_deg: float | None = word(
-        None, "σ of the baseline's direction in the left camera's frame.", ge=0
-    )
-    baseline_mm: float | None = word(None, "σ of the baseline's length.", ge=0)
-    focal_px: float | None = word(None, "σ of each camera's fx; fy moves along.", ge=0)
-    centre_px: float | None = word(None, "σ of each camera's cx and cy.", ge=0)
-    out: Path = word(Path("uncertainty"), "Folder for what is made.", *OUT)
+    rotation_deg: float | None = word("σ of the right camera's rotation, its size over all axes.", least=0)
+    direction_deg: float | None = word("σ of the baseline's direction in the left camera's frame.", least=0)
+    baseline_mm: float | None = word("σ of the baseline's length.", least=0)
+    focal_px: float | None = word("σ of each camera's fx; fy moves along.", least=0)
+    centre_px: float | None = word("σ of each camera's cx and cy.", least=0)
+    out: Path = word("Folder for what is made.", *OUT, default=Path("uncertainty"))
     depth_m: list[float] | None = word(
-        None,
         "Distances of the points seen, such as 1,10,inf; else 10 and 100 baselines and infinity.",
         metavar="METRES",
-        parse=distances_in,
+        parse=words.distances_in,
         has_commas=True,
     )
-    matching_px: float = word(0.25, "σ of a match's disparity, in rectified pixels.", ge=0)
+    matching_px: float = word("σ of a match's disparity, in rectified pixels.", default=0.25, least=0)
 
     @model_validator(mode="after")
     def _checked(self) -> Self:
@@ -179,18 +163,15 @@ class UncertaintyRequest(SeededMethodRequest, SizedRigRequest):
     @property
     def sigmas(self) -> dict[str, float]:
         """The stated sizes by the names that `RigCovariance.from_sigmas` has for them."""
-        sizes = {
-            "rotation_deg": self.rotation_deg,
-            "direction_deg": self.direction_deg,
-            "baseline_m": None if self.baseline_mm is None else self.baseline_mm / 1000,
-            "focal_px": self.focal_px,
-            "centre_px": self.centre_px,
-        }
-        return {name: sigma for name, sigma in sizes.items() if sigma is not None}
+        names = ("rotation_deg", "direction_deg", "baseline_mm", "focal_px", "centre_px")
+        given = {name: sigma for name in names if (sigma := getattr(self, name)) is not None}
+        if "baseline_mm" in given:
+            given["baseline_m"] = given.pop("baseline_mm") / 1000
+        return given
 
 
 class ConvertRequest(SizedRigRequest):
     """A calibration to be written in another format."""
 
-    out: Path = word(..., "The file to write; for some formats a folder of files.", *OUT)
-    to: str = word("native", "See `rectbench list formats`.", metavar="FORMAT")
+    out: Path = word("The file to write; for some formats a folder of files.", *OUT, default=...)
+    to: str = word("See `rectbench list formats`.", default="native", metavar="FORMAT")

@@ -1,15 +1,18 @@
-"""A request: fields with descriptions, limits and defaults; and how each is written on the command line."""
+"""Requests: fields with descriptions, limits and defaults; how each is written on the command line; and the
+fields that several verbs share: the rig, the method, a folder, a seed."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass
-from numbers import Integral
-from typing import Any
+from numbers import Integral, Real
+from typing import Annotated, Any
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, ValidationInfo
 
+from rectbench.applications.requests.words import options_in, size_in
 from rectbench.errors import InvalidInput, RectbenchError
+from rectbench.plugins.defaults import DEFAULT_METHOD
 
 
 @dataclass(frozen=True)
@@ -19,6 +22,7 @@ class Word:
     names: tuple[str, ...] = ()
     """Of an option; as the field is called where left out."""
     metavar: str | None = None
+    least: float | None = None
     is_positional: bool = False
     has_commas: bool = False
     """Whether one word may hold several values, separated by commas."""
@@ -27,27 +31,18 @@ class Word:
 
 
 def word(
-    default: Any,
-    text: str,
-    *names: str,
-    metavar: str | None = None,
-    parse: Callable[..., Any] | None = None,
-    has_commas: bool = False,
-    takes_rest: bool = False,
-    **limits: Any,
+    text: str, *names: str, default: Any = None, parse: Callable[..., Any] | None = None, **how: Any
 ) -> Any:
-    """A field with what it is, its `Word`, what reads its texts, and pydantic's limits (`ge`, ...)."""
-    field = Field(default, description=text, **limits)
-    field.metadata.append(Word(names, metavar, has_commas=has_commas, takes_rest=takes_rest))
-    field.metadata.extend([] if parse is None else [BeforeValidator(parse)])
+    """A field with what it is, its default, what reads what is given, and what else its `Word` says."""
+    word = Word(names, **how)
+    field = Field(default, description=text, ge=word.least)
+    field.metadata += [word] if parse is None else [word, BeforeValidator(parse)]
     return field
 
 
 def positional(metavar: str, text: str, default: Any = ...) -> Any:
     """A field that the command line knows by its place."""
-    field = Field(default, description=text)
-    field.metadata.append(Word(metavar=metavar, is_positional=True))
-    return field
+    return word(text, default=default, metavar=metavar, is_positional=True)
 
 
 class Request(BaseModel):
@@ -97,8 +92,53 @@ def number(
     return BeforeValidator(check)
 
 
-def listed(values: Any, info: ValidationInfo) -> Any:
-    """Several values as a list; one that is none is refused."""
-    if isinstance(values, str) or (values is not None and not isinstance(values, Iterable)):
-        raise InvalidInput(f"{info.field_name} is {values!r}; expected a list")
-    return None if values is None else list(values)
+Seed = Annotated[int, number(Integral, "a whole number from 0 on", lambda n: n >= 0, "seed")]
+Positive = Annotated[float, number(Real, "a number above 0", lambda x: 0 < x < float("inf"))]
+ImageWidth = Annotated[int, number(Integral, "a width in pixels", lambda n: n >= 1)]
+Text = Annotated[str, BeforeValidator(str)]
+"""A name or a path."""
+
+OUT = ("--out", "-o")
+METHOD = ("--method", "-m")
+METHOD_SEED = "Of the method's random choices."
+CALIBRATION = "The rig's calibration file or folder, or a rig's name; repeatable where files are several."
+
+
+class RigRequest(Request):
+    """Whose calibration: the same words in every verb that takes one."""
+
+    rig: Any = word(CALIBRATION, default=..., metavar="CALIB", takes_rest=True)
+    """A `Rig`, or what `load_rig` takes."""
+    max_angle_deg: float | None = word("The image circle: the lenses show nothing beyond this angle.")
+    unit: str | None = word("What the calibration's translations are in, if not metres: mm, cm, in or ft.")
+    cameras: Any = word(
+        "Two cameras of a calibration that holds more, by its names.", metavar="LEFT,RIGHT", has_commas=True
+    )
+
+
+class SizedRigRequest(RigRequest):
+    """A rig without images that would tell their size."""
+
+    size: tuple[int, int] | None = word(
+        "The images' size, where the calibration does not tell.", metavar="WxH", parse=size_in
+    )
+
+
+class OptionsRequest(Request):
+    """How a method is set."""
+
+    options: dict[str, Any] = word(
+        "An option of the method; repeatable.", "--option", default={}, metavar="NAME=VALUE", parse=options_in
+    )
+
+
+class MethodRequest(OptionsRequest):
+    """Which method, and how it is set."""
+
+    method: Text = word("A method's name, or a file.", *METHOD, default=DEFAULT_METHOD)
+
+
+class SeededMethodRequest(MethodRequest):
+    """The same where one seed is enough."""
+
+    seed: Seed = word(METHOD_SEED, default=0)

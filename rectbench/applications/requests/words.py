@@ -3,16 +3,27 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Mapping, Sequence
-from typing import Any, Literal
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any
 
 from pydantic import ValidationInfo
 
-from rectbench.applications.requests.request import listed
 from rectbench.errors import InvalidInput
 
 OptionSets = dict[str, dict[str, Any]]
 """Options by method and name."""
+
+
+def of_text(parse: Callable[[str], Any]) -> Callable[[Any], Any]:
+    """A function of a text that leaves what is no text as it is."""
+    return lambda given: parse(given) if isinstance(given, str) else given
+
+
+def listed(values: Any, info: ValidationInfo) -> Any:
+    """Several values as a list; one that is none is refused."""
+    if isinstance(values, str) or (values is not None and not isinstance(values, Iterable)):
+        raise InvalidInput(f"{info.field_name} is {values!r}; expected a list")
+    return None if values is None else list(values)
 
 
 def whole_numbers_in(words: Any, info: ValidationInfo) -> Any:
@@ -23,16 +34,16 @@ def whole_numbers_in(words: Any, info: ValidationInfo) -> Any:
     try:
         return [int(word) for word in values]
     except ValueError:
-        given = f"{info.field_name} are {_joined(values)}"
+        given = f"{info.field_name} are {','.join(map(str, values))}"
         raise InvalidInput(f"{given}; expected whole numbers such as 0,1,2") from None
 
 
 def distances_in(words: Any) -> Any:
     """Words as distances in metres."""
-    numbers = None if words is None else _numbers_in(words)
-    if numbers is None and words is not None:
-        raise InvalidInput(f"--depth-m is {_joined(words)}; expected distances in metres such as 1,10,inf")
-    return numbers
+    if words is None:
+        return None
+    given = f"--depth-m is {','.join(map(str, words))}"
+    return _numbers(words, f"{given}; expected distances in metres such as 1,10,inf")
 
 
 def tables_in(words: Any) -> Any:
@@ -40,39 +51,35 @@ def tables_in(words: Any) -> Any:
     return () if list(words) == ["none"] else tuple(words)
 
 
-def angles_in(text: Any) -> Any:
-    """Two angles with an x between them, such as 100x80; what is no text stays."""
-    return _two_numbers(text, "fov", "two angles such as 100x80") if isinstance(text, str) else text
+@of_text
+def angles_in(text: str) -> Any:
+    """Two angles with an x between them, such as 100x80."""
+    return _numbers(_around_x(text), f"fov is {text}; expected two angles such as 100x80", 2)
 
 
-def size_in(text: Any) -> Any:
-    """(width, height) in whole pixels of a text such as 1280x800; what is no text stays."""
-    if not isinstance(text, str):
-        return text
-    sides = _two_numbers(text, "size", "width and height such as 1280x800")
+@of_text
+def size_in(text: str) -> Any:
+    """(width, height) in whole pixels of a text such as 1280x800."""
+    sides = _numbers(_around_x(text), f"size is {text}; expected width and height such as 1280x800", 2)
     if any(side != round(side) for side in sides):
         raise InvalidInput(f"size is {text}; expected whole pixels")
-    return round(sides[0]), round(sides[1])
+    return [round(side) for side in sides]
 
 
-def crop_in(text: Any) -> Any:
-    """The word valid, or the four numbers of a text such as 10,20,640,480; what is no text stays."""
-    if not isinstance(text, str) or text == "valid":
+@of_text
+def crop_in(text: str) -> Any:
+    """The word valid, or the four numbers of a text such as 10,20,640,480."""
+    if text == "valid":
         return text
-    numbers = _numbers_in(text.split(","))
-    if numbers is None or len(numbers) != 4:
-        raise InvalidInput(f"crop is {text}; expected valid, or x,y,width,height in pixels")
-    return tuple(numbers)
+    return _numbers(text.split(","), f"crop is {text}; expected valid, or x,y,width,height in pixels", 4)
 
 
-def focal_in(text: Any) -> float | Literal["source"] | Any:
-    """The word source, or the number of a text; what is no text stays."""
-    if not isinstance(text, str) or text == "source":
+@of_text
+def focal_in(text: str) -> Any:
+    """The word source, or the number of a text."""
+    if text == "source":
         return text
-    numbers = _numbers_in([text])
-    if numbers is None:
-        raise InvalidInput(f"focal is {text}; expected a number of pixels, or source")
-    return numbers[0]
+    return _numbers([text], f"focal is {text}; expected a number of pixels, or source")[0]
 
 
 def option_sets_in(words: Mapping[str, Mapping[str, Any]] | Sequence[str] | None) -> Any:
@@ -104,20 +111,16 @@ def _value_in(text: str) -> Any:
         return text
 
 
-def _two_numbers(text: str, name: str, expected: str) -> tuple[float, float]:
-    numbers = _numbers_in(text.lower().replace("×", "x").split("x"))
-    if numbers is None or len(numbers) != 2:
-        raise InvalidInput(f"{name} is {text}; expected {expected}")
-    return numbers[0], numbers[1]
+def _around_x(text: str) -> list[str]:
+    return text.lower().replace("×", "x").split("x")
 
 
-def _numbers_in(words: Sequence[Any]) -> list[float] | None:
-    """The words as numbers; None where one is none."""
+def _numbers(words: Sequence[Any], refusal: str, count: int | None = None) -> list[float]:
+    """The words as numbers, `count` of them; InvalidInput with this refusal where they are not."""
     try:
-        return [float(word) for word in words]
+        numbers = [float(word) for word in words]
     except ValueError:
-        return None
-
-
-def _joined(words: Sequence[Any]) -> str:
-    return ",".join(map(str, words))
+        raise InvalidInput(refusal) from None
+    if count not in (None, len(numbers)):
+        raise InvalidInput(refusal)
+    return numbers

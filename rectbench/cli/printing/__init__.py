@@ -1,1 +1,1 @@
-"""What the command line prints, one file a concern: tables for a person to read. Imports what it shows."""
+"""What the command line prints for a person to read, a file for each file of verbs. Imports what it shows."""

@@ -56,26 +56,11 @@ def home_of(files: Sequence[Path]) -> Path:
     return Path(os.path.commonpath([file.parent for file in files]))
 
 
-def place_of(root: Path, file: str) -> Path:
-    """The file of a manifest in `root`; links are not followed, so that it stays in the folder it is in."""
-    return Path(os.path.normpath(root / file))
-
-
-def stated_calibrations(root: Path, manifest: Manifest, pairs: Sequence[FilePair]) -> list[Calibration]:
+def stated_calibrations(manifest: Manifest, pairs: Sequence[FilePair]) -> list[Calibration]:
     """The calibrations that a manifest states; raises InvalidInput for files that hold none."""
-    stated = []
-    for name, rig in manifest.rigs.items():
-        files = tuple(place_of(root, file) for file in rig.files)
-        one = Calibration(
-            name,
-            files,
-            home_of(files),
-            unit=rig.unit,
-            max_angle_deg=rig.max_angle_deg,
-            cameras=rig.cameras,
-        )
-        stated.append(_completed(one, pairs))
-    return stated
+    rigs = manifest.rigs.items()
+    stated = (Calibration(name, home=home_of(rig.files), **dict(rig)) for name, rig in rigs)
+    return [_completed(one, pairs) for one in stated]
 
 
 def found_calibrations(
@@ -88,20 +73,15 @@ def found_calibrations(
     A file that holds a rig is one. Of files that do not, two whose names differ in the side are one rig,
     together with a file of their pose beside them; and what else is in one folder.
     """
-    may_be = [file for file in files if file.suffix.lower() in SUFFIXES]
-    known = [file for file in may_be if is_calibration(file)]
-    set_of_known = set(known)
-    left_out = [
-        LeftOut(file, "no calibration of a format known here")
-        for file in may_be
-        if file not in set_of_known and file.suffix.lower() in TOLD_SUFFIXES
-    ]
-    found, failed = list[Calibration](), dict[Path, str]()
-    for file in known:
-        try:
-            found.append(_read([file], pairs))
-        except InvalidInput as error:
-            failed[file] = str(error)
+    found, failed, left_out = list[Calibration](), dict[Path, str](), list[LeftOut]()
+    for file in files:
+        if file.suffix.lower() in SUFFIXES and is_calibration(file):
+            try:
+                found.append(_read([file], pairs))
+            except InvalidInput as error:
+                failed[file] = str(error)
+        elif file.suffix.lower() in TOLD_SUFFIXES:
+            left_out.append(LeftOut(file, "no calibration of a format known here"))
     for group in _groups(root, list(failed)):
         try:
             one = _read(group, pairs)

@@ -10,10 +10,13 @@ Both are optional, and so is every key but `files`, `left` and `right`. What is 
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
+from typing import Annotated
 
 import yaml
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, ValidationInfo
+from pydantic_core import PydanticCustomError
 
 from rectbench.errors import InvalidInput
 
@@ -21,35 +24,50 @@ MANIFEST = "rectbench-data.yaml"
 MOST_BYTES = 1 << 20
 
 
-class StatedRig(BaseModel):
-    """A calibration by its files, as `load_rig` takes them."""
+def _in_folder(file: Path, info: ValidationInfo[Path]) -> Path:
+    """The file in the manifest's folder; links are not followed, so that it stays in the folder it is in."""
+    place = Path(os.path.normpath(info.context / file))
+    if not place.is_file():
+        raise PydanticCustomError("file", "{file}: no such file", {"file": str(file)})
+    return place
 
+
+Place = Annotated[Path, AfterValidator(_in_folder)]
+
+
+class _Stated(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    files: tuple[str, ...] = Field(min_length=1)
+
+class StatedRig(_Stated):
+    """A calibration by its files, as `load_rig` takes them."""
+
+    files: tuple[Place, ...] = Field(min_length=1)
     unit: str | None = None
     max_angle_deg: float | None = Field(default=None, gt=0, le=180)
     cameras: tuple[str, str] | None = None
 
 
-class StatedPair(BaseModel):
+class StatedPair(_Stated):
     """Two images that belong together."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
-    left: str
-    right: str
+    left: Place
+    right: Place
     name: str | None = Field(default=None, min_length=1)
     rig: str | None = None
 
 
-class Manifest(BaseModel):
-    """The whole file; paths are relative to its folder."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
+class Manifest(_Stated):
+    """The whole file; its paths are relative to its folder, and absolute once they are read."""
 
     rigs: dict[str, StatedRig] = Field(default_factory=dict)
     pairs: tuple[StatedPair, ...] = ()
+
+    @property
+    def files(self) -> set[Path]:
+        """All files that it names."""
+        images = {file for pair in self.pairs for file in (pair.left, pair.right)}
+        return images.union(*(rig.files for rig in self.rigs.values()))
 
 
 def read_manifest(folder: Path) -> Manifest:
@@ -60,30 +78,19 @@ def read_manifest(folder: Path) -> Manifest:
     path = folder / MANIFEST
     if not path.is_file():
         return Manifest()
+    if path.stat().st_size > MOST_BYTES:
+        raise InvalidInput(f"{path}: is over {MOST_BYTES >> 20} MiB; expected a list of rigs and pairs")
     try:
-        if path.stat().st_size > MOST_BYTES:
-            raise InvalidInput(f"{path}: is over {MOST_BYTES >> 20} MiB; expected a list of rigs and pairs")
         document = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except InvalidInput:
-        raise
     except (OSError, ValueError, yaml.YAMLError, RecursionError) as error:
         raise InvalidInput(f"{path}: cannot be read: {' '.join(str(error).split())}") from None
     try:
-        manifest = Manifest.model_validate(document or {})
+        manifest = Manifest.model_validate(document or {}, context=folder)
     except ValidationError as error:
         first = error.errors()[0]
         where = ".".join(map(str, first["loc"])) or "the file"
         raise InvalidInput(f"{path}: {where}: {first['msg']}") from None
-    _check_files(path, manifest)
-    return manifest
-
-
-def _check_files(path: Path, manifest: Manifest) -> None:
-    named = [(f"rigs.{name}.files", file) for name, rig in manifest.rigs.items() for file in rig.files]
     for i, pair in enumerate(manifest.pairs):
-        named += [(f"pairs.{i}.left", pair.left), (f"pairs.{i}.right", pair.right)]
-        if pair.rig is not None and pair.rig not in manifest.rigs:
+        if pair.rig not in (None, *manifest.rigs):
             raise InvalidInput(f"{path}: pairs.{i}.rig is {pair.rig!r}; expected one of the rigs it states")
-    for key, file in named:
-        if not (path.parent / file).is_file():
-            raise InvalidInput(f"{path}: {key}: {file}: no such file")
+    return manifest

@@ -17,6 +17,8 @@ from pathlib import Path
 Words = tuple[str, ...]
 """A path cut into words and numbers in lower case, "/" between folders; the suffix comes last."""
 
+Neighbours = Mapping[Path, list[Path]]
+
 FOLDER = "/"
 FROM_LEFT, FROM_RIGHT = "<left", "<right"
 """The first words of images that the user has said which side they are of."""
@@ -37,6 +39,11 @@ class FilePair:
     """What the names of both files have in common, words joined by hyphens; empty where that is nothing."""
     left: Path
     right: Path
+
+    @property
+    def files(self) -> tuple[Path, Path]:
+        """Both."""
+        return self.left, self.right
 
 
 @dataclass(frozen=True)
@@ -136,31 +143,20 @@ def camera_numbers(pair: FilePair) -> tuple[int, int] | None:
 def _paired(words: Mapping[Path, Words]) -> Pairing:
     free, partner, doubts = dict(words), dict[Path, Path](), dict[Path, list[Path]]()
     for way in _WAYS:
-        near = _neighbours(free, way)
-        for left in [file for file in free if near.rights[file]]:
-            right = near.rights[left][0]
-            if len(near.all(left)) == len(near.all(right)) == 1 and way.may_begin(words[left]):
+        rights, lefts = _neighbours(free, way)
+        near = {file: lefts[file] + rights[file] for file in free}
+        for left in [file for file in free if rights[file]]:
+            right = rights[left][0]
+            if len(near[left]) == len(near[right]) == 1 and way.may_begin(words[left]):
                 partner[left] = right
                 del free[left], free[right]
-        for file in free:
-            if near.all(file):
-                doubts.setdefault(file, near.all(file))
+        doubts = {file: near[file] for file in free if near[file]} | doubts
     pairs = (FilePair(_common(words[a], words[b]), a, b) for a, b in sorted(partner.items()))
     return Pairing(tuple(pairs), tuple(LeftOut(file, _reason(doubts.get(file, []))) for file in free))
 
 
-@dataclass(frozen=True)
-class _Neighbours:
-    """By file the files that its name makes it the left, or the right, image to."""
-
-    rights: Mapping[Path, list[Path]]
-    lefts: Mapping[Path, list[Path]]
-
-    def all(self, file: Path) -> list[Path]:
-        return [*self.lefts.get(file, []), *self.rights.get(file, [])]
-
-
-def _neighbours(words: Mapping[Path, Words], way: _Sides) -> _Neighbours:
+def _neighbours(words: Mapping[Path, Words], way: _Sides) -> tuple[Neighbours, Neighbours]:
+    """By file the right images that its name makes it the left one to, and the left ones likewise."""
     named = defaultdict[Words, list[Path]](list)
     for file, its in words.items():
         named[its].append(file)
@@ -170,7 +166,7 @@ def _neighbours(words: Mapping[Path, Words], way: _Sides) -> _Neighbours:
             for right in named.get(other, []):
                 rights[file].append(right)
                 lefts[right].append(file)
-    return _Neighbours(rights, lefts)
+    return rights, lefts
 
 
 def _right_names(words: Words, way: _Sides) -> Iterator[Words]:

@@ -15,12 +15,11 @@ from rectbench.pairs.finding.calibrations import (
     Calibration,
     found_calibrations,
     home_of,
-    place_of,
     stated_calibrations,
     with_cameras_of,
     within_circle,
 )
-from rectbench.pairs.finding.manifest import MANIFEST, Manifest, read_manifest
+from rectbench.pairs.finding.manifest import MANIFEST, read_manifest
 from rectbench.pairs.finding.names import FilePair, LeftOut, paired_files, words_in
 
 IMAGE_SUFFIXES = frozenset(
@@ -35,12 +34,9 @@ UNREADABLE = "not an image that OpenCV can read"
 
 
 @dataclass(frozen=True)
-class PhotoPair:
+class PhotoPair(FilePair):
     """Two photographs of one moment, and the calibration they belong to."""
 
-    name: str
-    left: Path
-    right: Path
     calibration: Calibration
 
 
@@ -65,7 +61,7 @@ class Photographs:
 def find_photographs(folder: str | Path) -> Photographs:
     """The pairs in a folder and all below it, each with the calibration nearest above it.
 
-    A manifest, see `data_manifest`, may state what cannot be found. A pair below several calibrations of
+    A manifest, see `manifest`, may state what cannot be found. A pair below several calibrations of
     one folder is there once for each. Raises InvalidInput where there is no pair with a calibration, with
     the first reasons, and for a manifest that cannot be used.
     """
@@ -74,13 +70,13 @@ def find_photographs(folder: str | Path) -> Photographs:
         raise InvalidInput(f"{root}: no such folder; expected one with pairs of images and their calibration")
     root = root.resolve()
     manifest = read_manifest(root)
-    stated = _stated_pairs(root, manifest)
-    named_files = _stated_files(root, manifest)
+    stated = {FilePair(p.name or p.left.stem, p.left, p.right): p.rig for p in manifest.pairs}
+    named_files = manifest.files | {root / MANIFEST}
     files = [file for file in _files_in(root) if file not in named_files]
     images, masks, no_images = _images(files)
     pairing = paired_files(images, root)
     pairs = [*stated, *pairing.pairs]
-    named = stated_calibrations(root, manifest, pairs)
+    named = stated_calibrations(manifest, pairs)
     found, no_calibrations = found_calibrations(root, files, pairs, [one.name for one in named])
 
     served = {one: list[FilePair]() for one in (*named, *found)}
@@ -96,11 +92,8 @@ def find_photographs(folder: str | Path) -> Photographs:
                 reason = f"{near[0].files[0].name} has many cameras, and which took it is not told"
             unpaired += [LeftOut(pair.left, reason), LeftOut(pair.right, reason)]
     used = {file for one, its in served.items() if its for file in one.files}
-    unpaired += [
-        LeftOut(one.files[0], "no pair of images is beside or below it")
-        for one in (*named, *found)
-        if used.isdisjoint(one.files)
-    ]
+    unused = [one.files[0] for one in (*named, *found) if used.isdisjoint(one.files)]
+    unpaired += [LeftOut(file, "no pair of images is beside or below it") for file in unused]
     left_out = [*no_images, *pairing.left_out, *no_calibrations, *unpaired]
     left_out += [LeftOut(mask, "a mask, no photograph") for mask in masks]
     photographs = Photographs(
@@ -120,22 +113,6 @@ def _files_in(root: Path) -> Iterator[Path]:
     for place, folders, files in os.walk(root):
         folders[:] = sorted(name for name in folders if not name.startswith("."))
         yield from (Path(place) / name for name in sorted(files) if not name.startswith("."))
-
-
-def _stated_pairs(root: Path, manifest: Manifest) -> dict[FilePair, str | None]:
-    """The pairs of the manifest, and their rigs where it states them."""
-    return {
-        FilePair(
-            pair.name or Path(pair.left).stem, place_of(root, pair.left), place_of(root, pair.right)
-        ): pair.rig
-        for pair in manifest.pairs
-    }
-
-
-def _stated_files(root: Path, manifest: Manifest) -> set[Path]:
-    named = [file for pair in manifest.pairs for file in (pair.left, pair.right)]
-    named += [file for rig in manifest.rigs.values() for file in rig.files]
-    return {root / MANIFEST, *(place_of(root, file) for file in named)}
 
 
 def _images(files: Iterable[Path]) -> tuple[list[Path], list[Path], list[LeftOut]]:
@@ -162,7 +139,7 @@ def _calibrations_of(
     """The calibration of this name; without a name those of the nearest folder that has any."""
     if name is not None:
         return [one for one in calibrations if one.name == name][:1]
-    place = home_of([pair.left, pair.right])
+    place = home_of(pair.files)
     while place.is_relative_to(root):
         if near := [one for one in calibrations if one.home == place]:
             return near
@@ -179,7 +156,7 @@ def _photo_pairs(
     for pair in pairs:
         for one, its in members.items():
             if pair in its:
-                name = pair.name or home_of([pair.left, pair.right]).name
+                name = pair.name or home_of(pair.files).name
                 yield PhotoPair(name, pair.left, pair.right, circled[one])
 
 
@@ -190,7 +167,7 @@ def _distinctly_named(root: Path, pairs: list[PhotoPair]) -> Iterator[PhotoPair]
     for pair in pairs:
         name, rig = pair.name, pair.calibration.name
         if counts[name, rig] > 1:
-            home = home_of([pair.left, pair.right])
+            home = home_of(pair.files)
             name = "-".join([*(home.relative_to(root).parts if home.is_relative_to(root) else ()), name])
         used[name, rig] += 1
         yield replace(pair, name=name if used[name, rig] == 1 else f"{name}-{used[name, rig]}")

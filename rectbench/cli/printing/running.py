@@ -1,0 +1,78 @@
+"""A run's main tables, what a gate found, and what two runs differ in."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+from rich.box import SIMPLE_HEAD
+from rich.table import Table
+from rich.text import Text
+
+from rectbench.cli.printing.screen import console, plain_table
+from rectbench.reporting.tables.tabulation import main_tables
+from rectbench.runs.run import read_run
+
+if TYPE_CHECKING:
+    from rectbench.runs.comparing import Comparison
+    from rectbench.runs.gating import Gating
+
+
+def show_summary(folder: Path) -> None:
+    """The main tables of a run, and where its page is."""
+    screen, found = console(), read_run(folder)
+    page_only = {column.key for column in found.catalogue.shown("page")}  # they make it too wide
+    for summary in main_tables(found):
+        caption = " ".join([summary.caption, *summary.notes])
+        table = Table(title=summary.title, caption=caption, box=SIMPLE_HEAD, pad_edge=False)
+        shown = [i for i, heading in enumerate(summary.headings) if heading.key not in page_only]
+        for i in shown:
+            heading = summary.headings[i]
+            # On a narrow screen the headings are folded, never the numbers.
+            widest = max(len(row[i].text) for row in summary.rows)
+            side: Literal["left", "right"] = "right" if heading.numeric else "left"
+            table.add_column(Text(heading.text), justify=side, min_width=widest)  # [px] is no markup
+        for row in summary.rows:
+            table.add_row(*(Text(row[i].text, style="bold" if row[i].best else "") for i in shown))
+        screen.print(table)
+    for failure in found.failures:
+        cell = f"{failure.method} on {failure.scene}/{failure.rig}/{failure.motion}/{failure.pose}"
+        screen.print(Text(f"{failure.status}: {cell}: {failure.reason}", style="yellow"))
+    screen.print(f"{len(found.results)} cells; page: {folder / 'index.html'}", soft_wrap=True)
+
+
+def show_gating(found: Gating) -> None:
+    """What a gate found, worst first."""
+    screen = console()
+    for title, lines, style in (
+        ("regression", found.regressions, "red"),
+        ("incomplete", found.incomplete, "yellow"),
+        ("improvement", found.improvements, "green"),
+        ("new", found.new, "dim"),
+    ):
+        for line in lines:
+            screen.print(Text(f"{title}: {line}", style=style), soft_wrap=True)
+    answer = {0: "good", 1: "worse than accepted"}.get(found.exit_code, "incomplete or nothing measured")
+    screen.print(f"{found.compared} cells compared: {answer}")
+
+
+SHOWN_DIFFERENCES = 40
+
+
+def show_comparison(comparison: Comparison, metrics: Collection[str]) -> None:
+    """The paired differences of these metrics, a row a method and metric."""
+    screen, table = console(), plain_table("method", "metric", "pairs", "A", "B", "B - A", "95 % interval")
+    for row in comparison.table.to_dict("records"):
+        if row["metric"] not in metrics:
+            continue
+        interval = "" if row["low"] != row["low"] else f"{row['low']:.3g} to {row['high']:.3g}"
+        numbers = (f"{row[name]:.5g}" for name in ("median_a", "median_b"))
+        table.add_row(
+            row["method"], row["metric"], str(row["pairs"]), *numbers, f"{row['difference']:+.3g}", interval
+        )
+    screen.print(table)
+    for line in comparison.unpaired[:SHOWN_DIFFERENCES]:
+        screen.print(Text(line, style="yellow"), soft_wrap=True)
+    if len(comparison.unpaired) > SHOWN_DIFFERENCES:
+        screen.print(f"... and {len(comparison.unpaired) - SHOWN_DIFFERENCES} more cells in one run alone")
