@@ -73,8 +73,7 @@ class RectifiedTruth:
     def points_left(self) -> FloatArray:
         """[H, W, 3] the points in the left camera's frame, metres; NaN where none."""
         rays, _ = RectifiedView(self.rect).unproject(self.pixels)
-        points: FloatArray = rays * self.depth[..., None].astype(np.float64)
-        return points
+        return rays * self.depth[..., None].astype(np.float64)
 
     @cached_property
     def px_right(self) -> FloatArray:
@@ -86,8 +85,7 @@ class RectifiedTruth:
     @cached_property
     def disparity_px(self) -> FloatArray:
         """[H, W] û_left - û_right, hidden from the right camera or not; NaN where there is no point."""
-        disparity: FloatArray = self.pixels[..., 0] - self.px_right[..., 0]
-        return disparity
+        return self.pixels[..., 0] - self.px_right[..., 0]
 
     @cached_property
     def matched(self) -> BoolArray:

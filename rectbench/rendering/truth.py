@@ -183,8 +183,7 @@ class Truth:
 
 def _points(camera: Camera, pixels: FloatArray, depth: NDArray[np.float32]) -> FloatArray:
     rays, _ = camera.unproject(pixels)
-    points: FloatArray = rays * depth[..., None].astype(np.float64)
-    return points
+    return rays * depth[..., None].astype(np.float64)
 
 
 def _on_image(camera: Camera, points: FloatArray) -> FloatArray:
@@ -194,8 +193,7 @@ def _on_image(camera: Camera, points: FloatArray) -> FloatArray:
 
 
 def _left_from_right(rig: Rig, points_right: FloatArray) -> FloatArray:
-    points: FloatArray = (points_right - rig.t_right_left) @ rig.R_right_left
-    return points
+    return (points_right - rig.t_right_left) @ rig.R_right_left
 
 
 def _spread(
@@ -212,5 +210,4 @@ def _spread(
     turn = np.arange(len(order)) - np.repeat(starts, counts)
     # Within a turn the cells come in random order, so that a cut-off last turn is spread as well.
     draw = np.lexsort((rng.random(len(order)), turn))[:n]
-    chosen: NDArray[np.int64] = np.sort(order[draw])
-    return chosen
+    return np.sort(order[draw])

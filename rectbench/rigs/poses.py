@@ -55,5 +55,4 @@ def perturb(rig: Rig, noise: PoseNoise, seed: int = 0) -> Rig:
 
 
 def _unit(vector: FloatArray) -> FloatArray:
-    unit: FloatArray = vector / np.linalg.norm(vector)
-    return unit
+    return vector / np.linalg.norm(vector)

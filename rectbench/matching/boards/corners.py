@@ -277,8 +277,7 @@ def _alternation(image: Grey, grid: FloatArray) -> int:
 def _with_ring(grid: FloatArray) -> FloatArray:
     """Corners [R, C, 2] with a row before the first and one after the last, on a parabola through three."""
     first, last = (3 * rows[0] - 3 * rows[1] + rows[2] for rows in (grid, grid[::-1]))
-    ringed: FloatArray = np.concatenate([first[None], grid, last[None]])
-    return ringed
+    return np.concatenate([first[None], grid, last[None]])
 
 
 def _refined(image: Grey, corners: FloatArray) -> FloatArray:

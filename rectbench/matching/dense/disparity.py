@@ -89,8 +89,7 @@ class Disparity:
         blended = sum(w * corner for w, corner in zip(weights, corners, strict=True))
         nearest = np.where(down < 0.5, *(np.where(across < 0.5, *corners[i : i + 2]) for i in (0, 2)))
         one_surface = corners.max(axis=0) - corners.min(axis=0) <= AGREEMENT_PX
-        value: FloatArray = np.where(inside, np.where(one_surface, blended, nearest), np.nan)
-        return value
+        return np.where(inside, np.where(one_surface, blended, nearest), np.nan)
 
 
 def dense_disparity(
@@ -251,10 +250,7 @@ def _agreeing(forth: FloatMap, back: FloatMap) -> FloatMap:
     inside = (target > -0.5) & (target < width - 0.5)
     column = np.where(inside, np.rint(target), 0).astype(np.int32)
     answer = np.take_along_axis(back, column, axis=1)
-    agreeing: FloatMap = np.where(
-        inside & (np.abs(answer - forth) <= AGREEMENT_PX), forth, np.float32(np.nan)
-    )
-    return agreeing
+    return np.where(inside & (np.abs(answer - forth) <= AGREEMENT_PX), forth, np.float32(np.nan))
 
 
 def _smoothed(disparity: FloatMap, guide: Image) -> FloatMap:
@@ -281,5 +277,4 @@ def _without_speckles(disparity: FloatMap) -> FloatMap:
     absent = -(1 << 15)
     steps = np.where(np.isfinite(disparity), np.rint(disparity * 16), absent).astype(np.int16)
     cv2.filterSpeckles(steps, absent, SPECKLE_PX, round(16 * AGREEMENT_PX))
-    kept: FloatMap = np.where(steps == absent, np.float32(np.nan), disparity)
-    return kept
+    return np.where(steps == absent, np.float32(np.nan), disparity)

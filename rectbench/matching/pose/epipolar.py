@@ -166,8 +166,7 @@ def triangulated(pose: Pose, matches: RayMatches) -> Triangulation:
 def in_front(pose: Pose, matches: RayMatches, limit_px: float) -> BoolArray:
     """Cheirality: whether each match [N] may be a point ahead of both cameras, or too far to tell."""
     place = triangulated(pose, matches)
-    mask: BoolArray = place.ahead | (place.alike & (place.parallax <= limit_px * matches.rad_per_px))
-    return mask
+    return place.ahead | (place.alike & (place.parallax <= limit_px * matches.rad_per_px))
 
 
 def tangents(direction: FloatArray) -> FloatArray:
@@ -194,5 +193,4 @@ def turn(omega: FloatArray) -> FloatArray:
     skew = cross_matrix(omega)
     # sinc and its like: exact at no turn at all.
     half = np.sinc(angle / 2 / np.pi)
-    rotation: FloatArray = np.eye(3) + np.sinc(angle / np.pi) * skew + 0.5 * half * half * skew @ skew
-    return rotation
+    return np.eye(3) + np.sinc(angle / np.pi) * skew + 0.5 * half * half * skew @ skew

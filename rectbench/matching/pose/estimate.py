@@ -99,8 +99,7 @@ class PoseEstimate:
     @property
     def rotation_vector_deg(self) -> FloatArray:
         """The rotation from left to right coordinates: its axis, as long as its angle in degrees [3]."""
-        vector: FloatArray = Rotation.from_matrix(self.R_right_left).as_rotvec(degrees=True)
-        return vector
+        return Rotation.from_matrix(self.R_right_left).as_rotvec(degrees=True)
 
     @property
     def rotation_sigma_deg(self) -> float:

@@ -45,8 +45,7 @@ class Courses:
 
     def each(self, values: Field) -> Field:
         """Values [count] or [3, count] of the blocks, spread over their texels."""
-        spread: Field = values[..., self.block]
-        return spread
+        return values[..., self.block]
 
     def tone(self, rng: np.random.Generator) -> Field:
         """A normal random number of each block, over its texels."""

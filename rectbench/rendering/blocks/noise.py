@@ -49,8 +49,7 @@ def _amplitude(height: int, width: int, scale_y: float, scale_x: float, slope: f
     fx = (np.fft.rfftfreq(width) * scale_x).astype(np.float32)
     square = fy * fy + fx * fx
     square[0, 0] = np.inf
-    amplitude: Field = square ** np.float32(-slope / 4)
-    return amplitude
+    return square ** np.float32(-slope / 4)
 
 
 def clouds(rng: np.random.Generator, height: int, width: int, slope: float = 2.5) -> Field:

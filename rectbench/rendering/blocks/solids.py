@@ -166,8 +166,7 @@ def ball(width: float, depth: float, height: float, roundness: float = 1.0) -> S
     )
 
     def bent(values: FloatArray) -> FloatArray:
-        curve: FloatArray = np.sign(values) * np.abs(values) ** roundness
-        return curve
+        return np.sign(values) * np.abs(values) ** roundness
 
     level = bent(np.cos(latitude))[:, None]
     sections = np.stack([

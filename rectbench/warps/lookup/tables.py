@@ -35,8 +35,7 @@ def lookup_table(warp: Warp, size: tuple[int, int]) -> tuple[FloatMap, FloatMap]
 def reads_source(map_x: FloatMap, map_y: FloatMap, size: tuple[int, int]) -> BoolArray:
     """Mask of table entries that read nothing but pixels of a source image of `size`."""
     w, h = size
-    mask: BoolArray = (map_x >= 0) & (map_x <= w - 1) & (map_y >= 0) & (map_y <= h - 1)
-    return mask
+    return (map_x >= 0) & (map_x <= w - 1) & (map_y >= 0) & (map_y <= h - 1)
 
 
 def _source_pixel(warp: Warp, c: Any, column: Any, row: Any, xp: Formulas) -> tuple[Any, Any]:

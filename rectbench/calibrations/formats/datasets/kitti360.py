@@ -37,8 +37,7 @@ def _read(sources: Sequence[Source], given: Given) -> Rig:
 def _read_pose(table: Source, camera: str) -> FloatArray:
     lines = (line.partition(":") for line in table.text.splitlines())
     entries = {name.strip(): numbers.split() for name, _, numbers in lines}
-    pose: FloatArray = Section(table.path, "", entries).rigid(camera, "12 numbers, the 3x4 pose of a camera")
-    return pose
+    return Section(table.path, "", entries).rigid(camera, "12 numbers, the 3x4 pose of a camera")
 
 
 def _recognises(source: Source) -> bool:

@@ -255,8 +255,7 @@ class _Binary:
         content = self.stream.read(length)
         if len(content) < length:
             raise self._cut_short()
-        values: tuple[float, ...] = struct.unpack("<" + layout, content)
-        return values
+        return struct.unpack("<" + layout, content)
 
     def count(self) -> int:
         """How many records there are; of an absurd number the first ones are read before the file ends."""

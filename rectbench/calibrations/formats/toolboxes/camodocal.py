@@ -153,8 +153,7 @@ def camera_text(camera: Camera, side: str, format: str) -> str:
         for theirs, ours in names.items():
             storage.write(theirs, equal.params[ours])
         storage.endWriteStruct()
-    text: str = storage.releaseAndGetString()
-    return text
+    return storage.releaseAndGetString()
 
 
 def _texts(rig: Rig, name: str) -> dict[str, str]:
