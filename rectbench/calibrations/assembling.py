@@ -9,9 +9,7 @@ from typing import Any
 import numpy as np
 
 from rectbench.calibrations.contract import UNITS, Given, PosedCamera
-from rectbench.calibrations.documents.faults import blaming, shown
-from rectbench.calibrations.documents.sources import Source
-from rectbench.calibrations.transforms import inverse
+from rectbench.calibrations.documents import Source, blaming, shown
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig
@@ -93,3 +91,21 @@ def single(sources: Sequence[Source]) -> Source:
 def placed(camera: PosedCamera, T_shared_camera: FloatArray) -> PosedCamera:
     """The same camera, standing there."""
     return replace(camera, T_shared_camera=T_shared_camera)
+
+
+def inverse(T: FloatArray) -> FloatArray:
+    """The inverse [4, 4] of a rigid transformation."""
+    R = T[:3, :3].T
+    return rigid(R, -R @ T[:3, 3])
+
+
+def rigid(R: Any, t: Any) -> FloatArray:
+    """The transformation [4, 4] with X' = R X + t."""
+    T = np.eye(4)
+    T[:3, :3], T[:3, 3] = R, t
+    return T
+
+
+def pose_matrix(rig: Rig) -> FloatArray:
+    """T_right_left [4, 4], metres."""
+    return rigid(rig.R_right_left, rig.t_right_left)

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
-from rectbench.calibrations.documents.sources import Source
+from rectbench.calibrations.documents import Source
 from rectbench.cameras import Camera
 from rectbench.errors import UnknownName
 from rectbench.rigs.file_formats import FileFormat

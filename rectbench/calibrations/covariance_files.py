@@ -23,9 +23,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from rectbench.calibrations.documents.faults import blaming, shown
-from rectbench.calibrations.documents.numbers import finite_number
-from rectbench.calibrations.documents.sources import Source
+from rectbench.calibrations.documents import Source, blaming, finite_number, shown
 from rectbench.calibrations.formats.odometry.kalibr import LAYOUTS
 from rectbench.calibrations.formats.toolboxes.opencv import PINHOLE_ORDER
 from rectbench.cameras import Camera

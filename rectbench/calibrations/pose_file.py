@@ -9,10 +9,8 @@ from __future__ import annotations
 
 import cv2
 
-from rectbench.calibrations.documents.faults import blaming
-from rectbench.calibrations.documents.sections import Section
-from rectbench.calibrations.documents.sources import Source
-from rectbench.calibrations.transforms import rigid
+from rectbench.calibrations.assembling import rigid
+from rectbench.calibrations.documents import Section, Source, blaming
 from rectbench.rigs.rig import Rig, checked_rotation
 from rectbench.types import FloatArray
 from rectbench.yaml_text import yaml_text

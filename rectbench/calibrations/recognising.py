@@ -6,7 +6,7 @@ import os
 
 from rectbench.calibrations import pose_file
 from rectbench.calibrations.contract import CameraFormat, RigFormat
-from rectbench.calibrations.documents.sources import Source
+from rectbench.calibrations.documents import Source
 from rectbench.errors import InvalidInput
 from rectbench.registry import registry
 from rectbench.rigs.file_formats import FORMATS

@@ -22,9 +22,7 @@ from pathlib import Path
 from typing import Any
 
 from rectbench.calibrations.contract import Given
-from rectbench.calibrations.documents.faults import blaming, one_line
-from rectbench.calibrations.documents.sections import Section, parse_document
-from rectbench.calibrations.documents.sources import Source
+from rectbench.calibrations.documents import Section, Source, blaming, one_line, parse_document
 from rectbench.calibrations.formats.native import read_fields, rig_fields
 from rectbench.errors import InvalidInput, UnknownName
 from rectbench.warps.frame import signed_baseline_m

@@ -28,11 +28,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from rectbench.calibrations.assembling import assembled, single
+from rectbench.calibrations.assembling import assembled, rigid, single
 from rectbench.calibrations.contract import Given, RigFormat
-from rectbench.calibrations.documents.faults import blaming
-from rectbench.calibrations.documents.sections import Section, parse_document
-from rectbench.calibrations.transforms import rigid
+from rectbench.calibrations.documents import Section, blaming, parse_document
 from rectbench.cameras import Camera
 from rectbench.rigs.file_formats import Writing
 from rectbench.rigs.rig import Rig

@@ -8,9 +8,7 @@ writes `distortion_coeffs` and `omni` too.
 from __future__ import annotations
 
 from rectbench.calibrations.contract import CameraFormat, Given, PosedCamera
-from rectbench.calibrations.documents.faults import blaming
-from rectbench.calibrations.documents.sections import Section
-from rectbench.calibrations.documents.sources import Source
+from rectbench.calibrations.documents import Section, Source, blaming
 from rectbench.calibrations.formats.odometry.kalibr import EQUI, FOCAL, RADTAN
 from rectbench.cameras import Camera
 

@@ -12,8 +12,7 @@ from collections.abc import Sequence
 
 from rectbench.calibrations.assembling import placed, rig_of_posed
 from rectbench.calibrations.contract import Given, RigFormat
-from rectbench.calibrations.documents.sections import Section
-from rectbench.calibrations.documents.sources import Source
+from rectbench.calibrations.documents import Section, Source
 from rectbench.calibrations.formats.toolboxes import camodocal
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig

@@ -11,13 +11,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from rectbench.calibrations.assembling import assembled, single
+from rectbench.calibrations.assembling import assembled, rigid, single
 from rectbench.calibrations.contract import Given, RigFormat
-from rectbench.calibrations.documents.faults import blaming
-from rectbench.calibrations.documents.sections import Section
-from rectbench.calibrations.documents.sources import Source
+from rectbench.calibrations.documents import Section, Source, blaming
 from rectbench.calibrations.formats.toolboxes.opencv import camera_matrix
-from rectbench.calibrations.transforms import rigid
 from rectbench.cameras import Camera
 from rectbench.rigs.rig import Rig
 

@@ -12,19 +12,15 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from rectbench.calibrations.assembling import chosen, rig_of_posed, single
+from rectbench.calibrations.assembling import chosen, rig_of_posed, rigid, single
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
-from rectbench.calibrations.documents.faults import blaming
-from rectbench.calibrations.documents.numbers import finite_number
-from rectbench.calibrations.documents.sections import Section
-from rectbench.calibrations.documents.sources import Source
+from rectbench.calibrations.documents import Section, Source, blaming, finite_number
 from rectbench.calibrations.formats.toolboxes.opencv import (
     CAMERA_MODELS,
     PINHOLE_COUNTS,
     camera_matrix,
     lens_parameters,
 )
-from rectbench.calibrations.transforms import rigid
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig, checked_rotation

@@ -12,8 +12,7 @@ from collections.abc import Sequence
 
 from rectbench.calibrations.assembling import rig_of_posed, single
 from rectbench.calibrations.contract import CameraFormat, Given, PosedCamera, RigFormat
-from rectbench.calibrations.documents.sections import Section
-from rectbench.calibrations.documents.sources import Source
+from rectbench.calibrations.documents import Section, Source
 from rectbench.calibrations.formats.devices.ros import posed_of
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig

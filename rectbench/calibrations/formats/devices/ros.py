@@ -18,10 +18,9 @@ from typing import Any
 
 import numpy as np
 
+from rectbench.calibrations.assembling import rigid
 from rectbench.calibrations.contract import CameraFormat, Given, PosedCamera
-from rectbench.calibrations.documents.faults import blaming
-from rectbench.calibrations.documents.sections import Section
-from rectbench.calibrations.documents.sources import Source
+from rectbench.calibrations.documents import Section, Source, blaming
 from rectbench.calibrations.formats.toolboxes.opencv import (
     FOCAL,
     ORDERS,
@@ -32,7 +31,6 @@ from rectbench.calibrations.formats.toolboxes.opencv import (
     matrix_of,
 )
 from rectbench.calibrations.layouts import layout_of
-from rectbench.calibrations.transforms import rigid
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
 from rectbench.rigs.file_formats import Writing

@@ -18,13 +18,10 @@ from typing import Any
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from rectbench.calibrations.assembling import rig_of_posed, single
+from rectbench.calibrations.assembling import inverse, pose_matrix, rig_of_posed, rigid, single
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
-from rectbench.calibrations.documents.faults import blaming, shown
-from rectbench.calibrations.documents.sections import Section
-from rectbench.calibrations.documents.sources import Source
+from rectbench.calibrations.documents import Section, Source, blaming, shown
 from rectbench.calibrations.layouts import layout_of
-from rectbench.calibrations.transforms import inverse, pose_matrix, rigid
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
 from rectbench.rigs.file_formats import Writing, lost_angles

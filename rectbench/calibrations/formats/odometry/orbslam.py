@@ -14,14 +14,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from rectbench.calibrations.assembling import assembled, rig_of_posed, single
+from rectbench.calibrations.assembling import assembled, inverse, rig_of_posed, rigid, single
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
-from rectbench.calibrations.documents.faults import blaming
-from rectbench.calibrations.documents.sections import Section
-from rectbench.calibrations.documents.sources import Source
+from rectbench.calibrations.documents import Section, Source, blaming
 from rectbench.calibrations.formats.devices.ros import rectified_place
 from rectbench.calibrations.formats.toolboxes.opencv import PINHOLE_COUNTS, camera_matrix, lens_parameters
-from rectbench.calibrations.transforms import inverse, rigid
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig

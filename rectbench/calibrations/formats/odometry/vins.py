@@ -15,11 +15,10 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from rectbench.calibrations.assembling import placed, rig_of_posed
+from rectbench.calibrations.assembling import inverse, placed, pose_matrix, rig_of_posed
 from rectbench.calibrations.contract import Given, RigFormat
-from rectbench.calibrations.documents.sources import Source
+from rectbench.calibrations.documents import Source
 from rectbench.calibrations.formats.toolboxes import camodocal
-from rectbench.calibrations.transforms import inverse, pose_matrix
 from rectbench.errors import InvalidInput
 from rectbench.rigs.file_formats import Writing
 from rectbench.rigs.rig import Rig

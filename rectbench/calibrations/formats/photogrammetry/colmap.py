@@ -33,10 +33,9 @@ from typing import Any
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from rectbench.calibrations.assembling import inverse, pose_matrix, rigid
 from rectbench.calibrations.contract import UNITS, Given, RigFormat
-from rectbench.calibrations.documents.faults import blaming, one_line, shown
-from rectbench.calibrations.documents.numbers import checked_size
-from rectbench.calibrations.documents.sources import Source
+from rectbench.calibrations.documents import Source, blaming, checked_size, one_line, shown
 from rectbench.calibrations.formats.photogrammetry.colmap_files import (
     CameraRecord,
     ImageRecord,
@@ -47,7 +46,6 @@ from rectbench.calibrations.formats.photogrammetry.colmap_files import (
     read_rigs,
 )
 from rectbench.calibrations.layouts import layout_of
-from rectbench.calibrations.transforms import inverse, pose_matrix, rigid
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput, UnknownName
 from rectbench.rigs.file_formats import Writing

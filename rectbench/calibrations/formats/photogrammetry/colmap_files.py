@@ -15,8 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
 
-from rectbench.calibrations.documents.faults import shown
-from rectbench.calibrations.documents.numbers import finite_number
+from rectbench.calibrations.documents import finite_number, shown
 from rectbench.errors import InvalidInput
 
 MAX_RECORDS = 25_000

@@ -12,11 +12,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from rectbench.calibrations.assembling import chosen, rig_of_posed, single
+from rectbench.calibrations.assembling import chosen, inverse, rig_of_posed, rigid, single
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
-from rectbench.calibrations.documents.faults import blaming
-from rectbench.calibrations.documents.sections import Section
-from rectbench.calibrations.documents.sources import Source
+from rectbench.calibrations.documents import Section, Source, blaming
 from rectbench.calibrations.formats.toolboxes.opencv import (
     CAMERA_MODELS,
     PINHOLE_COUNTS,
@@ -24,7 +22,6 @@ from rectbench.calibrations.formats.toolboxes.opencv import (
     lens_parameters,
 )
 from rectbench.calibrations.pose_file import read_rotation
-from rectbench.calibrations.transforms import inverse, rigid
 from rectbench.cameras import Camera
 from rectbench.rigs.rig import Rig
 

@@ -21,14 +21,12 @@ from typing import Any
 
 import cv2
 
+from rectbench.calibrations.assembling import rigid
 from rectbench.calibrations.contract import CameraFormat, Given, PosedCamera
-from rectbench.calibrations.documents.faults import blaming
-from rectbench.calibrations.documents.sections import Section
-from rectbench.calibrations.documents.sources import Source
+from rectbench.calibrations.documents import Section, Source, blaming
 from rectbench.calibrations.formats.toolboxes.ocamcalib import stretched
 from rectbench.calibrations.layouts import layout_of
 from rectbench.calibrations.pose_file import pose_text
-from rectbench.calibrations.transforms import rigid
 from rectbench.cameras import Camera
 from rectbench.rigs.file_formats import Writing
 from rectbench.rigs.rig import Rig, checked_rotation

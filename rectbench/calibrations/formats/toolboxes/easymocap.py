@@ -9,14 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from rectbench.calibrations.assembling import chosen, rig_of_posed
+from rectbench.calibrations.assembling import chosen, inverse, rig_of_posed, rigid
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
-from rectbench.calibrations.documents.faults import blaming
-from rectbench.calibrations.documents.sections import Section
-from rectbench.calibrations.documents.sources import Source
+from rectbench.calibrations.documents import Section, Source, blaming
 from rectbench.calibrations.formats.toolboxes.opencv import PINHOLE_COUNTS, camera_matrix, lens_parameters
 from rectbench.calibrations.pose_file import read_rotation
-from rectbench.calibrations.transforms import inverse, rigid
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig

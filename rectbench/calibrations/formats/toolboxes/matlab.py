@@ -21,14 +21,10 @@ from typing import Any
 import numpy as np
 
 from rectbench.calibrations import pose_file as pose
-from rectbench.calibrations.assembling import assembled, single
+from rectbench.calibrations.assembling import assembled, rigid, single
 from rectbench.calibrations.contract import CameraFormat, Given, PosedCamera, RigFormat
-from rectbench.calibrations.documents.faults import blaming
-from rectbench.calibrations.documents.numbers import checked_size
-from rectbench.calibrations.documents.sections import Section
-from rectbench.calibrations.documents.sources import Source
+from rectbench.calibrations.documents import Section, Source, blaming, checked_size
 from rectbench.calibrations.formats.toolboxes.ocamcalib import stretched
-from rectbench.calibrations.transforms import rigid
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig, checked_rotation

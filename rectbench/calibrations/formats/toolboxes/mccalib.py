@@ -12,9 +12,7 @@ from collections.abc import Sequence
 
 from rectbench.calibrations.assembling import chosen, rig_of_posed, single
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
-from rectbench.calibrations.documents.faults import blaming
-from rectbench.calibrations.documents.sections import Section
-from rectbench.calibrations.documents.sources import Source
+from rectbench.calibrations.documents import Section, Source, blaming
 from rectbench.calibrations.formats.toolboxes.opencv import (
     CAMERA_MODELS,
     PINHOLE_COUNTS,

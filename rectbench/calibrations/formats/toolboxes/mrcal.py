@@ -22,12 +22,11 @@ from typing import Any
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from rectbench.calibrations.assembling import inverse, pose_matrix, rigid
 from rectbench.calibrations.contract import CameraFormat, Given, PosedCamera
-from rectbench.calibrations.documents.faults import blaming, shown
-from rectbench.calibrations.documents.sections import Section
-from rectbench.calibrations.documents.sources import MAX_BYTES, Source, read_bytes
+from rectbench.calibrations.documents import Section, Source, blaming, shown
+from rectbench.calibrations.documents.sources import MAX_BYTES, read_bytes
 from rectbench.calibrations.layouts import layout_of
-from rectbench.calibrations.transforms import inverse, pose_matrix, rigid
 from rectbench.cameras import Camera
 from rectbench.cameras.brown import COEFFICIENTS
 from rectbench.errors import InvalidInput

@@ -19,9 +19,7 @@ import numpy as np
 from numpy.polynomial import Polynomial
 
 from rectbench.calibrations.contract import CameraFormat, Given, PosedCamera
-from rectbench.calibrations.documents.faults import blaming, shown
-from rectbench.calibrations.documents.numbers import checked_size, finite_number
-from rectbench.calibrations.documents.sources import Source
+from rectbench.calibrations.documents import Source, blaming, checked_size, finite_number, shown
 from rectbench.calibrations.layouts import layout_of
 from rectbench.calibrations.pose_file import pose_text
 from rectbench.cameras import Camera

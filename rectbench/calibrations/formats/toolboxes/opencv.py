@@ -35,12 +35,9 @@ from typing import Any
 import cv2
 import numpy as np
 
-from rectbench.calibrations.assembling import assembled
+from rectbench.calibrations.assembling import assembled, rigid
 from rectbench.calibrations.contract import Given, RigFormat
-from rectbench.calibrations.documents.faults import blaming, shown
-from rectbench.calibrations.documents.numbers import checked_size
-from rectbench.calibrations.documents.sections import Section
-from rectbench.calibrations.documents.sources import Source
+from rectbench.calibrations.documents import Section, Source, blaming, checked_size, shown
 from rectbench.calibrations.formats.toolboxes.opencv_keys import (
     DISTORTION,
     FLAGS,
@@ -61,7 +58,6 @@ from rectbench.calibrations.formats.toolboxes.opencv_keys import (
     parts_of,
 )
 from rectbench.calibrations.layouts import layout_of
-from rectbench.calibrations.transforms import rigid
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
 from rectbench.rigs.file_formats import Writing

@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass
 from itertools import islice
 
-from rectbench.calibrations.documents.sections import Section
+from rectbench.calibrations.documents import Section
 from rectbench.errors import InvalidInput
 from rectbench.types import FloatArray
 
