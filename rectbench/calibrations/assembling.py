@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -56,6 +56,19 @@ def assembled(
     return rig
 
 
+def side_by_side(
+    left: Camera,
+    right: Camera,
+    baseline: float,
+    given: Given,
+    where: str,
+    name: str,
+    unit: str | None = None,
+) -> Rig:
+    """The rig of two cameras that look the same way, the right one `baseline` to the right."""
+    return assembled(left, right, rigid(np.eye(3), [-baseline, 0.0, 0.0]), given, where, name, unit)
+
+
 def rig_of_posed(posed: Sequence[PosedCamera], given: Given, name: str, unit: str | None = None) -> Rig:
     """The rig of two cameras, left and right, that stand in one frame."""
     left, right = posed
@@ -79,6 +92,18 @@ def chosen(names: Sequence[str], given: Given, file: str) -> tuple[str, str]:
     if len(names) < 2:
         raise InvalidInput(f"{file}: holds {len(names)} cameras; expected two at least")
     return given.cameras or (names[0], names[1])
+
+
+def camera_of(
+    where: str,
+    model: str,
+    size: tuple[int, int],
+    params: Mapping[str, Any],
+    max_angle_deg: float | None = None,
+) -> Camera:
+    """The camera of a file's numbers; what is wrong with them is said of `where`."""
+    with blaming(where):
+        return Camera(model, size, params, max_angle_deg)
 
 
 def single(sources: Sequence[Source]) -> Source:

@@ -179,5 +179,5 @@ def _read(section: Section, what: str, kinds: Kinds) -> Any:
         raise InvalidInput(f"{section.at('kind')}: {UnknownName(what, one_line(kind), kinds)}")
     made, fields = kinds[kind]
     values = [field.read(section, name) for name, field in fields.items()]
-    with blaming(section.at("").removesuffix(".")):
+    with blaming(section.where):
         return made(*values)

@@ -43,6 +43,11 @@ class Section:
         found = f"is {shown(_essence(self.values[key]))}" if key in self.values else "is missing"
         return InvalidInput(f"{self.at(key)} {found}; expected {expected}")
 
+    @property
+    def where(self) -> str:
+        """File and key of the mapping itself, as errors name them."""
+        return self.at("").removesuffix(".").removesuffix(": ")
+
     def at(self, key: str) -> str:
         """File and full key, as errors name them."""
         return f"{self.file}: {one_line(f'{self.key}{key}')}"
@@ -80,6 +85,15 @@ class Section:
             raise self.fault(key, expected)
         return value
 
+    def choice(self, key: str, known: Collection[str], default: str | None = None) -> str:
+        """The word under `key`, one of those known; `default`, if given, where the key is missing."""
+        if default is not None and key not in self:
+            return default
+        word = self.text(key, ", ".join(known))
+        if word not in known:
+            raise self.fault(key, ", ".join(known))
+        return word
+
     def number(self, key: str, expected: str) -> float:
         """The finite number under `key`."""
         number = finite_number(self.values.get(key))
@@ -97,6 +111,11 @@ class Section:
             raise self.fault(key, expected)
         return numbers
 
+    def named(self, key: str, names: Collection[str]) -> dict[str, float]:
+        """The finite numbers under `key` by these names, one each."""
+        expected = f"{len(names)} finite numbers ({' '.join(names)})"
+        return dict(zip(names, self.numbers(key, expected, len(names)), strict=True))
+
     def array(self, key: str, expected: str, sizes: Collection[int]) -> FloatArray:
         """The finite numbers under `key`, flat: a number, a list, a list of rows, or rows, cols and data."""
         numbers = flat_numbers(self.values.get(key))
@@ -110,6 +129,12 @@ class Section:
         if isinstance(value, list) and any(isinstance(row, list) for row in value):
             return self._rows(key, value, expected, rows, columns)
         return self.array(key, expected, (rows * columns,)).reshape(rows, columns)
+
+    def rotation(self, key: str, expected: str = "a 3x3 rotation") -> FloatArray:
+        """The rotation [3, 3] under `key`, given as a `matrix`."""
+        R = self.matrix(key, expected, 3, 3)
+        with blaming(self.at(key)):
+            return checked_rotation(R, "it")
 
     def rigid(self, key: str, expected: str) -> FloatArray:
         """The rigid transformation [4, 4] under `key`, given as [R t; 0 0 0 1] or [R t]."""

@@ -28,9 +28,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from rectbench.calibrations.assembling import assembled, rigid, single
+from rectbench.calibrations.assembling import assembled, camera_of, rigid, single
 from rectbench.calibrations.contract import Given, RigFormat
-from rectbench.calibrations.documents import Section, blaming, parse_document
+from rectbench.calibrations.documents import Section, parse_document
 from rectbench.cameras import Camera
 from rectbench.rigs.file_formats import Writing
 from rectbench.rigs.rig import Rig
@@ -92,8 +92,7 @@ def _read_camera(section: Section, size: tuple[int, int] | None) -> Camera:
     }
     max_angle = section.number("max_angle_deg", "degrees") if "max_angle_deg" in section else None
     image = section.size("size", size)
-    with blaming(section.at("").removesuffix(".")):
-        return Camera(model, image, values, max_angle)
+    return camera_of(section.where, model, image, values, max_angle)
 
 
 def _camera_fields(camera: Camera) -> dict[str, Any]:

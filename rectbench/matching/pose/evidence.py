@@ -7,14 +7,7 @@ from scipy.spatial import cKDTree
 from scipy.special import bdtrc, gammaln
 
 from rectbench.errors import PoseNotFound
-from rectbench.matching.pose.epipolar import (
-    Pose,
-    RayMatches,
-    essential,
-    in_front,
-    sampson_px,
-    triangulated,
-)
+from rectbench.matching.pose.epipolar import Pose, RayMatches, essential, in_front, sampson_px, triangulated
 from rectbench.matching.pose.robust import SAMPLE
 from rectbench.types import BoolArray, FloatArray, Matches
 

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 
 from rectbench.calibrations.assembling import placed, rig_of_posed
 from rectbench.calibrations.contract import Given, RigFormat
-from rectbench.calibrations.documents import Section, Source
+from rectbench.calibrations.documents import Source
 from rectbench.calibrations.formats.toolboxes import camodocal
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig
@@ -34,9 +34,7 @@ def _read(sources: Sequence[Source], given: Given) -> Rig:
 
 
 def _read_pose(table: Source, camera: str) -> FloatArray:
-    lines = (line.partition(":") for line in table.text.splitlines())
-    entries = {name.strip(): numbers.split() for name, _, numbers in lines}
-    return Section(table.path, "", entries).rigid(camera, "12 numbers, the 3x4 pose of a camera")
+    return table.table(":").rigid(camera, "12 numbers, the 3x4 pose of a camera")
 
 
 def _recognises(source: Source) -> bool:

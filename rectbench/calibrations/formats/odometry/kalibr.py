@@ -20,9 +20,9 @@ from typing import Any
 
 import numpy as np
 
-from rectbench.calibrations.assembling import assembled, inverse, pose_matrix, single
+from rectbench.calibrations.assembling import assembled, camera_of, inverse, pose_matrix, single
 from rectbench.calibrations.contract import Given, RigFormat
-from rectbench.calibrations.documents import Section, Source, blaming, shown
+from rectbench.calibrations.documents import Section, Source, shown
 from rectbench.calibrations.formats.toolboxes.opencv_keys import MATRIX
 from rectbench.calibrations.layouts import layout_of
 from rectbench.cameras import Camera
@@ -148,17 +148,10 @@ def _read_camera(section: Section, size: tuple[int, int] | None) -> Camera:
     if distortion not in known:
         raise section.fault("distortion_model", f"{', '.join(known)} with {projection}")
     layout = layouts[projection, distortion]
-    params = _read_parameters(section, "intrinsics", layout.intrinsics)
+    params = section.named("intrinsics", layout.intrinsics)
     if layout.distortion:
-        params |= _read_parameters(section, "distortion_coeffs", layout.distortion)
-    image = section.size("resolution", size)
-    with blaming(section.at("").removesuffix(".")):
-        return Camera(layout.model, image, params)
-
-
-def _read_parameters(section: Section, key: str, names: tuple[str, ...]) -> dict[str, float]:
-    numbers = section.numbers(key, f"{len(names)} finite numbers ({' '.join(names)})", len(names))
-    return dict(zip(names, numbers, strict=True))
+        params |= section.named("distortion_coeffs", layout.distortion)
+    return camera_of(section.where, layout.model, section.size("resolution", size), params)
 
 
 def _texts(rig: Rig, name: str) -> dict[str, str]:

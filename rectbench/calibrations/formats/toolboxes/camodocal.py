@@ -21,15 +21,15 @@ from typing import Any
 
 import cv2
 
-from rectbench.calibrations.assembling import rigid
+from rectbench.calibrations.assembling import camera_of, rigid
 from rectbench.calibrations.contract import CameraFormat, Given, PosedCamera
-from rectbench.calibrations.documents import Section, Source, blaming
+from rectbench.calibrations.documents import Section, Source
 from rectbench.calibrations.formats.toolboxes.ocamcalib import stretched
 from rectbench.calibrations.layouts import layout_of
 from rectbench.calibrations.pose_file import pose_text
 from rectbench.cameras import Camera
 from rectbench.rigs.file_formats import Writing
-from rectbench.rigs.rig import Rig, checked_rotation
+from rectbench.rigs.rig import Rig
 from rectbench.types import FloatArray
 
 RADTAN = {name: name for name in ("k1", "k2", "p1", "p2")}
@@ -67,8 +67,7 @@ def read_posed(source: Source, given: Given) -> PosedCamera:
         raise file.fault("model_type", ", ".join(MODELS))
     size = file.sides("image_width", "image_height", given.size)
     model, params = READERS[kind](file)
-    with blaming(source.path):
-        return PosedCamera(source.path, Camera(model, size, params), _pose(file))
+    return PosedCamera(source.path, camera_of(source.path, model, size, params), _pose(file))
 
 
 def _pose(file: Section) -> FloatArray | None:
@@ -78,10 +77,8 @@ def _pose(file: Section) -> FloatArray | None:
     if not all(key in file for key in EXTRINSIC):
         return None
     R_key, t_key = EXTRINSIC
-    R = file.array(R_key, "a 3x3 rotation from camera to body", (9,)).reshape(3, 3)
-    t = file.array(t_key, "three metres", (3,))
-    with blaming(file.at(R_key)):
-        return rigid(checked_rotation(R, "it"), t)
+    R = file.rotation(R_key, "a 3x3 rotation from camera to body")
+    return rigid(R, file.array(t_key, "three metres", (3,)))
 
 
 def _pinhole(file: Section) -> Lens:

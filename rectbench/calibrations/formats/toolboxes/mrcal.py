@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from rectbench.calibrations.assembling import inverse, pose_matrix, rigid
+from rectbench.calibrations.assembling import camera_of, inverse, pose_matrix, rigid
 from rectbench.calibrations.contract import CameraFormat, Given, PosedCamera
 from rectbench.calibrations.documents import Section, Source, blaming, shown
 from rectbench.calibrations.documents.sources import MAX_BYTES, read_bytes
@@ -81,10 +81,9 @@ def read_posed(source: Source, given: Given) -> PosedCamera:
     file = Section(source.path, "", parse(_text(source), source.path))
     key = next((key for key in LENS_KEYS if key in file), LENS_KEYS[0])
     model, names = _model(file, key)
-    numbers = file.numbers("intrinsics", f"{len(names)} finite numbers ({' '.join(names)})", len(names))
+    params = file.named("intrinsics", names)
     size = file.size("imagersize", given.size)
-    with blaming(f"{source.path}: intrinsics"):
-        camera = Camera(model, size, dict(zip(names, numbers, strict=True)))
+    camera = camera_of(f"{source.path}: intrinsics", model, size, params)
     return PosedCamera(source.path, camera, _pose(file))
 
 

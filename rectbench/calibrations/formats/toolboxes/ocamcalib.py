@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 from numpy.polynomial import Polynomial
 
+from rectbench.calibrations.assembling import camera_of
 from rectbench.calibrations.contract import CameraFormat, Given, PosedCamera
 from rectbench.calibrations.documents import Source, blaming, checked_size, finite_number, shown
 from rectbench.calibrations.layouts import layout_of
@@ -84,8 +85,7 @@ def read_posed(source: Source, given: Given) -> PosedCamera:
         raise InvalidInput(f"{source.path}: size is {size}; expected {given.size} as given beside the file")
     # The direct polynomial is the calibrated one; the other is a fit to it.
     params = {"cx": column, "cy": row, "c": c, "d": d, "e": e, "poly": poly, "inverse_poly": inverse_poly}
-    with blaming(source.path):
-        return PosedCamera(source.path, Camera("ocam", size, params))
+    return PosedCamera(source.path, camera_of(source.path, "ocam", size, params))
 
 
 def _blocks(source: Source) -> list[list[float]]:

@@ -35,7 +35,7 @@ from typing import Any
 import cv2
 import numpy as np
 
-from rectbench.calibrations.assembling import assembled, rigid
+from rectbench.calibrations.assembling import assembled, camera_of, rigid
 from rectbench.calibrations.contract import Given, RigFormat
 from rectbench.calibrations.documents import Section, Source, blaming, checked_size, shown
 from rectbench.calibrations.formats.toolboxes.opencv_keys import (
@@ -82,23 +82,19 @@ SUFFIXES = (".yml", ".yaml", ".xml", ".json")
 PINHOLE_COUNTS = (4, 5, 8, 12, 14)
 """Lengths of OpenCV's distortion vector; the last two of 14 tilt the sensor."""
 
+COUNTS = {"pinhole": PINHOLE_COUNTS, "fisheye": (4,), "omnidir": (4,)}
+
 LARGEST_TANGENTIAL = 0.02
 """Of p1 and p2 of a pinhole; what is larger, third or fourth of four, is rather a fisheye's k3 or k4."""
 
-LENSES = {
-    "pinhole": "pinhole",
-    "perspective": "pinhole",
-    "radtan": "pinhole",
-    "plumb_bob": "pinhole",
-    "rational_polynomial": "pinhole",
-    "fisheye": "fisheye",
-    "equidistant": "fisheye",
-    "kannala-brandt": "fisheye",
-    "kannala_brandt": "fisheye",
-    "omnidir": "omnidir",
-    "omni": "omnidir",
-    "mei": "omnidir",
+WORDS = {
+    "pinhole": ("pinhole", "perspective", "radtan", "plumb_bob", "rational_polynomial"),
+    "fisheye": ("fisheye", "equidistant", "kannala-brandt", "kannala_brandt"),
+    "omnidir": ("omnidir", "omni", "mei"),
 }
+"""What files call the lenses."""
+
+LENSES = {word: lens for lens, words in WORDS.items() for word in words}
 
 
 def camera_matrix(file: Section, key: str, lens: str) -> dict[str, float]:
@@ -133,6 +129,21 @@ def lens_parameters(file: Section, key: str, lens: str, counts: Collection[int])
     return dict(zip(order, distortion, strict=False))
 
 
+def opencv_camera(
+    file: Section,
+    matrix: str,
+    distortion: str,
+    lens: str,
+    size: tuple[int, int],
+    where: str | None = None,
+    counts: Collection[int] | None = None,
+) -> Camera:
+    """The camera of OpenCV's matrix and distortion under these keys; `counts` are the latter's lengths."""
+    params = camera_matrix(file, matrix, lens)
+    params |= lens_parameters(file, distortion, lens, counts or COUNTS[lens])
+    return camera_of(where or file.at(matrix), CAMERA_MODELS[lens], size, params)
+
+
 def _read(sources: Sequence[Source], given: Given) -> Rig:
     files = Files([part for source in sources for part in parts_of(source.document)])
     left, right = (_read_camera(files, number, given.size) for number in (1, 2))
@@ -158,7 +169,7 @@ def _read_camera(files: Files, number: int, size: tuple[int, int] | None) -> Cam
     stated = _read_lens(files, number)
     lens = stated or ("pinhole" if xi is None else "omnidir")
     params = camera_matrix(document, key, lens)
-    counts = PINHOLE_COUNTS if lens == "pinhole" else (4,)
+    counts = COUNTS[lens]
     source, name = files.first(DISTORTION, number, f"{counts[0]} distortion coefficients ({lens})")
     coefficients = lens_parameters(source, name, lens, counts)
     if (stated, lens, len(coefficients)) == (None, "pinhole", 4):
@@ -168,8 +179,7 @@ def _read_camera(files: Files, number: int, size: tuple[int, int] | None) -> Cam
         holder, xi_key = xi or files.first(XI, number, "Mei's xi, a number")
         params["xi"] = float(holder.array(xi_key, "Mei's xi, a number", (1,))[0])
     image = _read_size(files, number, size)
-    with blaming(f"{document.at(key)}, {name}"):
-        return Camera(CAMERA_MODELS[lens], image, params)
+    return camera_of(f"{document.at(key)}, {name}", CAMERA_MODELS[lens], image, params)
 
 
 def _check_pinhole(where: str, coefficients: dict[str, float]) -> None:
