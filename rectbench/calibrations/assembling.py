@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from rectbench.calibrations.contract import UNITS, Given, PosedCamera
-from rectbench.calibrations.documents import Source, blaming, shown
+from rectbench.calibrations.documents import Section, Source, blaming, shown
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig
@@ -106,16 +105,20 @@ def camera_of(
         return Camera(model, size, params, max_angle_deg)
 
 
+def rig_of_list(
+    source: Source, cameras: Section, read: Callable[[Section, Given], PosedCamera], given: Given
+) -> Rig:
+    """The rig of two cameras of a list, which are called cam0, cam1, ... by their places."""
+    names = chosen([f"cam{place}" for place in cameras.values], given, source.path)
+    sections = (cameras.section(name.removeprefix("cam"), "a camera") for name in names)
+    return rig_of_posed([read(section, given) for section in sections], given, source.name)
+
+
 def single(sources: Sequence[Source]) -> Source:
     """The one file of a format that takes no more than one."""
     if len(sources) > 1:
         raise InvalidInput(f"{sources[0].path}: is read together with {sources[1].path}; expected one file")
     return sources[0]
-
-
-def placed(camera: PosedCamera, T_shared_camera: FloatArray) -> PosedCamera:
-    """The same camera, standing there."""
-    return replace(camera, T_shared_camera=T_shared_camera)
 
 
 def inverse(T: FloatArray) -> FloatArray:

@@ -89,11 +89,11 @@ def _read(sources: Sequence[Source], given: Given) -> Rig:
     source = _chain(sources)
     chain = source.document
     names = _chosen(chain, given)
-    left = chain.section(names[0], "the first camera, the left one")
-    right = chain.section(names[1], "the second camera; a rig takes two")
-    left_camera, right_camera = _read_camera(left, given.size), _read_camera(right, given.size)
+    expected = ("the first camera, the left one", "the second camera; a rig takes two")
+    sections = [chain.section(name, what) for name, what in zip(names, expected, strict=True)]
+    left, right = (_read_camera(section, given.size) for section in sections)
     key, T = _read_pose(chain, *names)
-    return assembled(left_camera, right_camera, T, given, key, source.name)
+    return assembled(left, right, T, given, key, source.name)
 
 
 def _chain(sources: Sequence[Source]) -> Source:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from rectbench.calibrations.assembling import camera_of, chosen, inverse, rig_of_posed, single
+from rectbench.calibrations.assembling import camera_of, inverse, rig_of_list, single
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents import Section, Source
 from rectbench.calibrations.formats.odometry.kalibr import LAYOUTS, Layout
@@ -24,10 +24,7 @@ DISTORTIONS = {"none": "none", "radial-tangential": "radtan", "equidistant": "eq
 
 def _read(sources: Sequence[Source], given: Given) -> Rig:
     source = single(sources)
-    cameras = _cameras(source)
-    names = chosen([f"cam{place}" for place in cameras.values], given, source.path)
-    posed = [_read_posed(cameras.section(name.removeprefix("cam"), "a camera"), given) for name in names]
-    return rig_of_posed(posed, given, source.name)
+    return rig_of_list(source, _cameras(source), _read_posed, given)
 
 
 def _cameras(source: Source) -> Section:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from rectbench.calibrations.assembling import camera_of, chosen, rig_of_posed, single
+from rectbench.calibrations.assembling import camera_of, rig_of_list, single
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents import Section, Source
 from rectbench.calibrations.formats.toolboxes.opencv import ORDERS
@@ -24,10 +24,7 @@ MODELS = {
 
 def _read(sources: Sequence[Source], given: Given) -> Rig:
     source = single(sources)
-    cameras = source.document.section_of_list("cameras")
-    names = chosen([f"cam{place}" for place in cameras.values], given, source.path)
-    posed = [_read_posed(cameras.section(name.removeprefix("cam"), "a camera"), given) for name in names]
-    return rig_of_posed(posed, given, source.name)
+    return rig_of_list(source, source.document.section_of_list("cameras"), _read_posed, given)
 
 
 def _read_posed(section: Section, given: Given) -> PosedCamera:

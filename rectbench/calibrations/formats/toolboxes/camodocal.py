@@ -35,13 +35,12 @@ from rectbench.types import FloatArray
 RADTAN = {name: name for name in ("k1", "k2", "p1", "p2")}
 PINHOLE = {name: name for name in ("fx", "fy", "cx", "cy")}
 RATIONAL = RADTAN | {name: name for name in ("k3", "k4", "k5", "k6")}
+AFFINE = {name: name for name in ("ac", "ad", "ae", "cx", "cy")}
 MEI = {"gamma1": "fx", "gamma2": "fy", "u0": "cx", "v0": "cy"}
 KANNALA_BRANDT = {"mu": "fx", "mv": "fy", "u0": "cx", "v0": "cy"}
 KANNALA_BRANDT_RADIAL = {"k2": "k1", "k3": "k2", "k4": "k3", "k5": "k4"}
 BODY = "body_T_cam0"
 EXTRINSIC = ("extrinsicRotation", "extrinsicTranslation")
-
-MODELS = ("PINHOLE", "PINHOLE_FULL", "MEI", "KANNALA_BRANDT", "SCARAMUZZA")
 
 DISTORTION, PROJECTION, MIRROR = "distortion_parameters", "projection_parameters", "mirror_parameters"
 WRITTEN: dict[str, tuple[str, dict[str, dict[str, str]]]] = {
@@ -52,8 +51,7 @@ WRITTEN: dict[str, tuple[str, dict[str, dict[str, str]]]] = {
 }
 """The models that are written, and the sections of their numbers by CamOdoCal's and our names."""
 
-Lens = tuple[str, dict[str, Any]]
-"""A projection model and its parameters."""
+MODELS = (*WRITTEN, "SCARAMUZZA")
 
 MAX_POLYNOMIAL = 20
 """Coefficients of an inverse polynomial that CamOdoCal writes."""
@@ -66,7 +64,8 @@ def read_posed(source: Source, given: Given) -> PosedCamera:
     if kind not in MODELS:
         raise file.fault("model_type", ", ".join(MODELS))
     size = file.sides("image_width", "image_height", given.size)
-    model, params = READERS[kind](file)
+    model = "ocam" if kind == "SCARAMUZZA" else WRITTEN[kind][0]
+    params = _scaramuzza(file) if kind == "SCARAMUZZA" else _parameters(file, kind)
     return PosedCamera(source.path, camera_of(source.path, model, size, params), _pose(file))
 
 
@@ -81,43 +80,23 @@ def _pose(file: Section) -> FloatArray | None:
     return rigid(R, file.array(t_key, "three metres", (3,)))
 
 
-def _pinhole(file: Section) -> Lens:
-    params = _numbers(file, "projection_parameters", PINHOLE)
-    return "pinhole", params | _numbers(file, "distortion_parameters", RADTAN)
+def _parameters(file: Section, kind: str) -> dict[str, Any]:
+    sections = WRITTEN[kind][1]
+    if kind == "KANNALA_BRANDT" and DISTORTION in file:
+        # CamOdoCal puts all eight under projection_parameters; converters from Kalibr split them.
+        sections = {PROJECTION: KANNALA_BRANDT, DISTORTION: KANNALA_BRANDT_RADIAL}
+    return {name: n for key, names in sections.items() for name, n in _numbers(file, key, names).items()}
 
 
-def _pinhole_full(file: Section) -> Lens:
-    params = _numbers(file, "projection_parameters", PINHOLE)
-    return "pinhole", params | _numbers(file, "distortion_parameters", RATIONAL)
-
-
-def _mei(file: Section) -> Lens:
-    params = _numbers(file, "mirror_parameters", {"xi": "xi"})
-    params |= _numbers(file, "projection_parameters", MEI)
-    return "unified", params | _numbers(file, "distortion_parameters", RADTAN)
-
-
-def _kannala_brandt(file: Section) -> Lens:
-    # CamOdoCal puts all eight under projection_parameters; converters from Kalibr split them.
-    params = _numbers(file, "projection_parameters", KANNALA_BRANDT)
-    radial = "distortion_parameters" if "distortion_parameters" in file else "projection_parameters"
-    return "kannala-brandt", params | _numbers(file, radial, KANNALA_BRANDT_RADIAL)
-
-
-def _scaramuzza(file: Section) -> Lens:
-    affine = _numbers(file, "affine_parameters", {name: name for name in ("ac", "ad", "ae", "cx", "cy")})
-    stretch = ((affine["ac"], affine["ad"]), (affine["ae"], 1.0))
-    params = stretched(
-        stretch,
+def _scaramuzza(file: Section) -> dict[str, Any]:
+    affine = _numbers(file, "affine_parameters", AFFINE)
+    return stretched(
+        ((affine["ac"], affine["ad"]), (affine["ae"], 1.0)),
         (affine["cx"], affine["cy"]),
         _polynomial(file, "poly_parameters"),
         _polynomial(file, "inv_poly_parameters") if "inv_poly_parameters" in file else (),
         file.at("affine_parameters"),
     )
-    return "ocam", params
-
-
-READERS = dict(zip(MODELS, (_pinhole, _pinhole_full, _mei, _kannala_brandt, _scaramuzza), strict=True))
 
 
 def _numbers(file: Section, key: str, names: Mapping[str, str]) -> dict[str, Any]:
