@@ -36,15 +36,11 @@ def equal_cameras(camera: Camera) -> list[Camera]:
     waiting = [camera]
     while waiting:
         kin = waiting.pop(0)
-        for model, params in RULES.get(kin.model, _none)(kin.params):
+        for model, params in RULES[kin.model](kin.params) if kin.model in RULES else ():
             if model not in found:
                 found[model] = Camera(model, camera.size, params, camera.max_angle_deg)
                 waiting.append(found[model])
     return list(found.values())
-
-
-def _none(p: Params) -> Iterator[Lens]:
-    yield from ()
 
 
 def _equidistant(p: Params) -> Iterator[Lens]:

@@ -3,6 +3,7 @@
 from rectbench.calibrations.documents.faults import blaming as blaming
 from rectbench.calibrations.documents.faults import one_line as one_line
 from rectbench.calibrations.documents.faults import shown as shown
+from rectbench.calibrations.documents.numbers import agreed_size as agreed_size
 from rectbench.calibrations.documents.numbers import checked_size as checked_size
 from rectbench.calibrations.documents.numbers import finite_number as finite_number
 from rectbench.calibrations.documents.sections import Section as Section

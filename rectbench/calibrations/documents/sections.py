@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from rectbench.calibrations.documents.faults import blaming, one_line, shown
-from rectbench.calibrations.documents.numbers import checked_size, finite_number, flat_numbers
+from rectbench.calibrations.documents.numbers import agreed_size, checked_size, finite_number, flat_numbers
 from rectbench.calibrations.documents.parsing import Malformed, parse
 from rectbench.errors import InvalidInput, UnknownName
 from rectbench.rigs.rig import checked_rotation
@@ -161,35 +161,29 @@ class Section:
     def size(self, key: str, given: tuple[int, int] | None) -> tuple[int, int]:
         """The image's (width, height) under `key`; `given` stands in where the file has none."""
         expected = "[width, height] in whole pixels"
-        if key not in self.values and given is None:
-            raise InvalidInput(
-                f"{self.at(key)} is missing; expected {expected}, or `size=` given beside the file"
-            )
-        if key not in self.values:
-            return checked_size(given)
+        if key not in self:
+            return self._size_beside(key, expected, given)
         try:
             stated = checked_size(self.numbers(key, expected, 2))
         except InvalidInput:
             raise self.fault(key, expected) from None
-        if given is not None and checked_size(given) != stated:
+        if given is not None and given != stated:
             raise self.fault(key, f"the size {given[0]}x{given[1]} given beside the file")
         return stated
 
     def sides(self, width: str, height: str, given: tuple[int, int] | None) -> tuple[int, int]:
         """The image's (width, height) under two keys; `given` stands in where the file has neither."""
         if width not in self and height not in self:
-            if given is None:
-                raise InvalidInput(
-                    f"{self.at(width)} is missing; expected it and {height}, or `size=` given beside the file"
-                )
-            return checked_size(given)
-        with blaming(f"{self.at(width)} and {height}"):
-            stated = checked_size([self.number(key, "whole pixels") for key in (width, height)])
-        if given is not None and checked_size(given) != stated:
+            return self._size_beside(width, f"it and {height}", given)
+        sides = [self.number(key, "whole pixels") for key in (width, height)]
+        return agreed_size(f"{self.at(width)} and {height}", sides, given)
+
+    def _size_beside(self, key: str, expected: str, given: tuple[int, int] | None) -> tuple[int, int]:
+        if given is None:
             raise InvalidInput(
-                f"{self.at(width)}: size is {stated}; expected {given} as given beside the file"
+                f"{self.at(key)} is missing; expected {expected}, or `size=` given beside the file"
             )
-        return stated
+        return given
 
 
 def _essence(value: Any) -> Any:

@@ -42,13 +42,12 @@ LONGEST_MODEL = 40
 """Characters; a longer name is damage, which an error need not repeat."""
 
 
-def read_native(path: str | os.PathLike[str], text: str, size: tuple[int, int] | None = None) -> Rig:
+def read_native(path: str | os.PathLike[str], text: str) -> Rig:
     """The rig written in `text`, the content of the file `path`.
 
-    `size` stands in for an image size that the file leaves out. Raises InvalidInput in one line
-    that names file, key and what was expected there.
+    Raises InvalidInput in one line that names file, key and what was expected there.
     """
-    return read_fields(parse_document(text, str(path)), Given(size))
+    return read_fields(parse_document(text, str(path)), Given())
 
 
 def read_fields(document: Section, given: Given) -> Rig:

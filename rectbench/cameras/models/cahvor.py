@@ -12,8 +12,7 @@ from types import SimpleNamespace
 from typing import Any, ClassVar
 
 from rectbench.cameras import brown
-from rectbench.cameras.intervals import Interval
-from rectbench.cameras.lens import FOCAL_PARAMETERS, Lens, register
+from rectbench.cameras.lens import FOCAL_PARAMETERS, Interval, Lens, register
 from rectbench.formulas.domain import FARTHEST, PIXEL_SLACK
 from rectbench.formulas.protocol import Formulas
 

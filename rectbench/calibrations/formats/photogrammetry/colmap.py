@@ -33,9 +33,9 @@ from typing import Any
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from rectbench.calibrations.assembling import inverse, pose_matrix, rigid
+from rectbench.calibrations.assembling import camera_of, inverse, pose_matrix, rigid
 from rectbench.calibrations.contract import UNITS, Given, RigFormat
-from rectbench.calibrations.documents import Source, blaming, checked_size, one_line, shown
+from rectbench.calibrations.documents import Source, agreed_size, blaming, one_line, shown
 from rectbench.calibrations.formats.photogrammetry.colmap_files import (
     CameraRecord,
     ImageRecord,
@@ -227,11 +227,7 @@ def _camera(file: Path, cameras: dict[int, CameraRecord], standing: _Standing, s
         params["fx"] = params["fy"] = params.pop("f")
     params["cx"] -= 0.5
     params["cy"] -= 0.5
-    with blaming(record.where):
-        stated = checked_size(record.size)
-        if size is not None and checked_size(size) != stated:
-            raise InvalidInput(f"size is {stated}; expected {tuple(size)} as given beside the file")
-        return Camera(model, stated, params)
+    return camera_of(record.where, model, agreed_size(record.where, record.size, size), params)
 
 
 def _model(record: CameraRecord) -> tuple[str, tuple[str, ...]]:

@@ -23,7 +23,7 @@ import numpy as np
 from rectbench.calibrations import pose_file as pose
 from rectbench.calibrations.assembling import assembled, camera_of, rigid, single
 from rectbench.calibrations.contract import CameraFormat, Given, PosedCamera, RigFormat
-from rectbench.calibrations.documents import Section, Source, blaming, checked_size
+from rectbench.calibrations.documents import Section, Source, agreed_size
 from rectbench.calibrations.formats.toolboxes.ocamcalib import stretched
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
@@ -110,13 +110,7 @@ def _read_size(section: Section, given: Given) -> tuple[int, int]:
     if "ImageSize" not in section or section.values["ImageSize"] in ([], None):
         return section.sides("ImageSize", "", given.size)
     rows, columns = section.numbers("ImageSize", "[rows, columns]", 2)
-    with blaming(section.at("ImageSize")):
-        size = checked_size((columns, rows))
-    if given.size not in (None, size):
-        raise InvalidInput(
-            f"{section.at('ImageSize')}: size is {size}; expected {given.size} as given beside it"
-        )
-    return size
+    return agreed_size(section.at("ImageSize"), (columns, rows), given.size)
 
 
 def _fisheye(lens: Section) -> dict[str, Any]:

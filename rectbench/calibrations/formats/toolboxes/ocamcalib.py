@@ -20,7 +20,7 @@ from numpy.polynomial import Polynomial
 
 from rectbench.calibrations.assembling import camera_of
 from rectbench.calibrations.contract import CameraFormat, Given, PosedCamera
-from rectbench.calibrations.documents import Source, blaming, checked_size, finite_number, shown
+from rectbench.calibrations.documents import Source, agreed_size, blaming, finite_number, shown
 from rectbench.calibrations.layouts import layout_of
 from rectbench.calibrations.pose_file import pose_text
 from rectbench.cameras import Camera
@@ -78,11 +78,7 @@ def read_posed(source: Source, given: Given) -> PosedCamera:
     poly, inverse_poly, centre, affine, sides = _blocks(source)
     row, column = centre
     c, d, e = affine
-    height, width = sides
-    with blaming(f"{source.path}: {BLOCKS[4]}"):
-        size = checked_size((width, height))
-    if given.size not in (None, size):
-        raise InvalidInput(f"{source.path}: size is {size}; expected {given.size} as given beside the file")
+    size = agreed_size(f"{source.path}: {BLOCKS[4]}", sides[::-1], given.size)
     # The direct polynomial is the calibrated one; the other is a fit to it.
     params = {"cx": column, "cy": row, "c": c, "d": d, "e": e, "poly": poly, "inverse_poly": inverse_poly}
     return PosedCamera(source.path, camera_of(source.path, "ocam", size, params))

@@ -37,7 +37,7 @@ import numpy as np
 
 from rectbench.calibrations.assembling import assembled, camera_of, rigid
 from rectbench.calibrations.contract import Given, RigFormat
-from rectbench.calibrations.documents import Section, Source, blaming, checked_size, shown
+from rectbench.calibrations.documents import Section, Source, agreed_size, shown
 from rectbench.calibrations.formats.toolboxes.opencv_keys import (
     DISTORTION,
     FLAGS,
@@ -210,17 +210,14 @@ def _read_lens(files: Files, number: int) -> str | None:
 def _read_size(files: Files, number: int, given: tuple[int, int] | None) -> tuple[int, int]:
     """The image size of that camera, or else of any; `given` where no file has one."""
     for document, key in (*files.of_camera(SIZE, number), *files.holders(SIZE)):
-        with blaming(document.at(key)):
-            width, height = checked_size(document.array(key, "[width, height]", (2,)))
-        stated = Section(document.file, "", {key: width, f"{key} (height)": height})
-        return stated.sides(key, f"{key} (height)", given)
+        return agreed_size(document.at(key), document.array(key, "[width, height]", (2,)), given)
     for document, key in (*files.of_camera(SIDES, number), *files.holders(SIDES)):
         return document.sides(key.replace(*SIDES[::-1]), key.replace(*SIDES), given)
     if given is None:
         raise InvalidInput(
             f"{files}: image_width is missing; expected it and image_height, or `size=` beside the file"
         )
-    return checked_size(given)
+    return given
 
 
 def _recognises(source: Source) -> bool:
