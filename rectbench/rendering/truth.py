@@ -170,15 +170,8 @@ class Truth:
             (self.depth_right, self.points_right, self.px_left_of_right, self.visible_right),
         )
         for side, (depth, points, px, visible) in zip(SIDES, both, strict=True):
-            yield (
-                side,
-                {
-                    "depth": depth,
-                    "points": points.astype(np.float32),
-                    "px_other": px.astype(np.float32),
-                    "visible": visible,
-                },
-            )
+            single = {"points": points.astype(np.float32), "px_other": px.astype(np.float32)}
+            yield side, {"depth": depth, **single, "visible": visible}
 
 
 def _points(camera: Camera, pixels: FloatArray, depth: NDArray[np.float32]) -> FloatArray:

@@ -150,10 +150,7 @@ Kinds = Mapping[str, tuple[type, Mapping[str, Field]]]
 TARGETS: Kinds = {
     "perspective": (Perspective, {"matrix": MATRIX}),
     "epipolar": (Epipolar, {"u": PROFILE, "v": PROFILE}),
-    "framed": (
-        Framed,
-        {"target": TARGET} | dict.fromkeys(("left", "top", "across", "down"), NUMBER),
-    ),
+    "framed": (Framed, {"target": TARGET} | dict.fromkeys(("left", "top", "across", "down"), NUMBER)),
 }
 PROFILES: Kinds = {
     "cubic": (Cubic, dict.fromkeys(("c0", "c1", "c2", "c3", "low", "high"), NUMBER)),
@@ -166,10 +163,7 @@ def _fields(item: Target | Profile, kinds: Kinds) -> dict[str, Any]:
     """What a target or profile is as plain data; of somebody else's class no more than its name."""
     for kind, (made, fields) in kinds.items():
         if type(item) is made:
-            return {
-                "kind": kind,
-                **{name: field.write(getattr(item, name)) for name, field in fields.items()},
-            }
+            return {"kind": kind} | {name: field.write(getattr(item, name)) for name, field in fields.items()}
     return {"kind": type(item).__name__}
 
 

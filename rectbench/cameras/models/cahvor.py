@@ -28,12 +28,7 @@ class Cahvor(Lens):
 
     name = "cahvor"
     parameters = (*FOCAL_PARAMETERS, "alpha", "beta", "r0", "r1", "r2")
-    ranges: ClassVar = {
-        **Lens.ranges,
-        "alpha": TILT,
-        "beta": TILT,
-        "r0": Interval(low=-1.0, low_open=True),
-    }
+    ranges: ClassVar = {**Lens.ranges, "alpha": TILT, "beta": TILT, "r0": Interval(low=-1.0, low_open=True)}
 
     def derive(self, p: SimpleNamespace) -> dict[str, Any]:
         sin_a, cos_a, sin_b, cos_b = math.sin(p.alpha), math.cos(p.alpha), math.sin(p.beta), math.cos(p.beta)

@@ -224,12 +224,8 @@ def _next_row(image: Grey, blurred: Grey, grid: FloatArray) -> FloatArray | None
     shortest = min(np.linalg.norm(back, axis=-1).min(), np.linalg.norm(along, axis=-1).min())
     if not np.linalg.norm(row - guess, axis=-1).max() <= NEAR_GUESS * shortest:
         return None
-    rising, falling = (
-        np.stack(
-            [levels_at(blurred, row + WITHIN_SQUARE * (end * along + tilt * end * back)) for end in (-1, 1)]
-        )
-        for tilt in (1, -1)
-    )
+    steps = [[WITHIN_SQUARE * (end * along + tilt * end * back) for end in (-1, 1)] for tilt in (1, -1)]
+    rising, falling = (np.stack([levels_at(blurred, row + step) for step in ends]) for ends in steps)
     even = np.arange(len(row)) % 2 == 0
     for light, dark in ((rising, falling), (falling, rising)):
         contrast = np.where(even, light.min(axis=0) - dark.max(axis=0), dark.min(axis=0) - light.max(axis=0))
@@ -257,10 +253,8 @@ def _alternation(image: Grey, grid: FloatArray) -> int:
     contrast_along = signs * (grey - (padded[1:-1, :-2] + padded[1:-1, 2:]) / 2)
     median = float(np.median(contrast))
     least = EVEN_CONTRAST * abs(median)
-    if (
-        abs(median) < LEAST_CONTRAST
-        or min((np.sign(median) * c).min() for c in (contrast, contrast_along)) < least
-    ):
+    lowest = min((np.sign(median) * c).min() for c in (contrast, contrast_along))
+    if abs(median) < LEAST_CONTRAST or lowest < least:
         return 0
     for side in range(4):
         turned, sign = np.rot90(ringed, side), np.rot90(signs, side)[0]

@@ -65,12 +65,9 @@ class Disparity:
 
     def __post_init__(self) -> None:
         width, height = self.rect.size
-        for name, array, shape in (
-            ("px", self.px, (height, width)),
-            ("image", self.image, (height, width, 3)),
-        ):
-            if np.shape(array) != shape:
-                raise InvalidInput(f"{name} of a disparity has shape {np.shape(array)}; expected {shape}")
+        for name, shape in (("px", (height, width)), ("image", (height, width, 3))):
+            if (found := np.shape(getattr(self, name))) != shape:
+                raise InvalidInput(f"{name} of a disparity has shape {found}; expected {shape}")
 
     def at(self, px_rect: ArrayLike) -> FloatArray:
         """Disparities [...] at pixels [..., 2] of the rectified left image; NaN where there is none.
@@ -168,10 +165,8 @@ def shared_disparities(rect: Rectification, nearest_baselines: float) -> tuple[f
     cameras in either order. None where the views share nothing.
     """
     width, height = rect.size
-    grid = np.stack(
-        np.meshgrid(np.linspace(0, width - 1, SEARCH_CELLS), np.linspace(0, height - 1, SEARCH_CELLS)),
-        axis=-1,
-    ).reshape(-1, 2)
+    u, v = np.linspace(0, width - 1, SEARCH_CELLS), np.linspace(0, height - 1, SEARCH_CELLS)
+    grid = np.stack(np.meshgrid(u, v), axis=-1).reshape(-1, 2)
     grid = grid[rect.left.source.contains(rect.left.inverse(grid))]
     rays = rect.left.target.unproject(grid)[0] @ rect.R_rect_left
     nearness = np.linspace(0, 1 / (nearest_baselines * rect.rig.baseline_m), SEARCH_DEPTHS)

@@ -102,11 +102,7 @@ class Nearest(NamedTuple):
 def _nearest(words: Words, others: Words) -> Nearest:
     """The nearest of others [M, d] to each of words [N, d]: the largest product, M at least 2."""
     count = len(words)
-    partner, similarity, second = (
-        np.empty(count, np.intp),
-        np.empty(count, np.float32),
-        np.empty(count, np.float32),
-    )
+    partner, (similarity, second) = np.empty(count, np.intp), np.empty((2, count), np.float32)
     back, most_similar = np.zeros(len(others), np.intp), np.full(len(others), -np.inf, np.float32)
     for first in range(0, count, ROWS_AT_ONCE):
         products = words[first : first + ROWS_AT_ONCE] @ others.T
