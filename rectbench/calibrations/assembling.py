@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from rectbench.calibrations.contract import UNITS, Given, PosedCamera
-from rectbench.calibrations.documents import Section, Source, blaming, shown
+from rectbench.calibrations.documents import Section, Source, errors_at, shown
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig
@@ -45,7 +45,7 @@ def assembled(
         raise InvalidInput(f"{where}: is in {unit}; expected unit={given.unit!r} as given beside the file")
     stated = unit or given.unit
     T = np.asarray(T_right_left, dtype=np.float64)
-    with blaming(where):
+    with errors_at(where):
         rig = Rig(left, right, T[:3, :3], UNITS[stated or "m"] * T[:3, 3], name=name)
     if stated is None and rig.baseline_m > LONGEST_BASELINE_M:
         raise InvalidInput(
@@ -101,7 +101,7 @@ def camera_of(
     max_angle_deg: float | None = None,
 ) -> Camera:
     """The camera of a file's numbers; what is wrong with them is said of `where`."""
-    with blaming(where):
+    with errors_at(where):
         return Camera(model, size, params, max_angle_deg)
 
 

@@ -122,7 +122,7 @@ def _register(variant: str) -> None:
 
 @cache
 def _camera_object_class(variant: str) -> Any:
-    """The envelope in which a Camera travels through Mitsuba's Properties, which hold only Objects."""
+    """A Camera as an object of Mitsuba's, as its Properties hold no others."""
     mi = mitsuba()
     base: Any = mi.Object
 

@@ -1,4 +1,4 @@
-"""Two calibrated cameras, how they stand, how surely, and how they are saved. Imports cameras and below."""
+"""Two calibrated cameras, their pose and its uncertainty, and saving them. Imports cameras and below."""
 
 from rectbench.rigs.covariance import RigCovariance as RigCovariance
 from rectbench.rigs.motions import MOTIONS as MOTIONS

@@ -1,4 +1,4 @@
-"""How wrong the pose is that a rectifier is told: a stated noise on the true one."""
+"""Pose noise: how far the pose that a rectifier is told is off the true one."""
 
 from __future__ import annotations
 

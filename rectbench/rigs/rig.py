@@ -1,4 +1,4 @@
-"""Two calibrated cameras and how the right one stands to the left."""
+"""Two calibrated cameras and the pose of the right one relative to the left."""
 
 from __future__ import annotations
 

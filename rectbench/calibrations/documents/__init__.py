@@ -1,6 +1,6 @@
 """Files as text and plain data: JSON, YAML, XML, lists of numbers. Imports `rigs.rig` and what is below."""
 
-from rectbench.calibrations.documents.faults import blaming as blaming
+from rectbench.calibrations.documents.faults import errors_at as errors_at
 from rectbench.calibrations.documents.faults import one_line as one_line
 from rectbench.calibrations.documents.faults import shown as shown
 from rectbench.calibrations.documents.numbers import agreed_size as agreed_size

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from rectbench.calibrations.documents.faults import blaming, shown
+from rectbench.calibrations.documents.faults import errors_at, shown
 from rectbench.errors import InvalidInput
 
 MAX_NUMBERS = 256
@@ -29,7 +29,7 @@ def checked_size(size: Any) -> tuple[int, int]:
 
 def agreed_size(where: str, size: Any, given: tuple[int, int] | None) -> tuple[int, int]:
     """`size` as (width, height), which is the one given beside the file if there is one."""
-    with blaming(where):
+    with errors_at(where):
         stated = checked_size(size)
     if given not in (None, stated):
         raise InvalidInput(f"{where}: size is {stated}; expected {given} as given beside the file")

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from rectbench.calibrations.documents.faults import blaming, one_line, shown
+from rectbench.calibrations.documents.faults import errors_at, one_line, shown
 from rectbench.calibrations.documents.numbers import agreed_size, checked_size, finite_number, flat_numbers
 from rectbench.calibrations.documents.parsing import Malformed, parse
 from rectbench.errors import InvalidInput, UnknownName
@@ -40,7 +40,7 @@ class Section:
 
     def fault(self, key: str, expected: str) -> InvalidInput:
         """The error of a key that is missing, or that is not what was expected."""
-        found = f"is {shown(_essence(self.values[key]))}" if key in self.values else "is missing"
+        found = f"is {shown(_numbers_of(self.values[key]))}" if key in self.values else "is missing"
         return InvalidInput(f"{self.at(key)} {found}; expected {expected}")
 
     @property
@@ -133,7 +133,7 @@ class Section:
     def rotation(self, key: str, expected: str = "a 3x3 rotation") -> FloatArray:
         """The rotation [3, 3] under `key`, given as a `matrix`."""
         R = self.matrix(key, expected, 3, 3)
-        with blaming(self.at(key)):
+        with errors_at(self.at(key)):
             return checked_rotation(R, "it")
 
     def rigid(self, key: str, expected: str) -> FloatArray:
@@ -147,7 +147,7 @@ class Section:
         if not np.array_equal(transform[3], [0, 0, 0, 1]):
             row = shown(transform[3].tolist())
             raise InvalidInput(f"{self.at(key)} has the last row {row}; expected [0, 0, 0, 1]")
-        with blaming(self.at(key)):
+        with errors_at(self.at(key)):
             transform[:3, :3] = checked_rotation(transform[:3, :3], "its 3x3 part")
         return transform
 
@@ -186,6 +186,6 @@ class Section:
         return given
 
 
-def _essence(value: Any) -> Any:
-    """Of a matrix with rows, cols and data what people look at, its numbers."""
+def _numbers_of(value: Any) -> Any:
+    """The numbers of a matrix with rows, cols and data; any other value as it is."""
     return value["data"] if isinstance(value, dict) and "data" in value else value

@@ -43,7 +43,7 @@ in squares."""
 RIM = 0.3
 """How far beyond its outer squares the board is looked for to go on, in squares."""
 GOES_ON = 0.5
-"""Of the contrast, from which on what is there goes on alternating: the board is cut off."""
+"""Share of the contrast at which the squares still alternate beyond the board: it is cut off there."""
 UPRIGHT_DEG = 60.0
 """Where a board looks the same upside down, the images may be turned against each other by so much."""
 WINDOW, LEAST_WINDOW, MOST_WINDOW = 0.3, 2, 10

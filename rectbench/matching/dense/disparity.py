@@ -38,7 +38,7 @@ AGREEMENT_PX = 2.0
 """The disparities of the two images may differ by this, and the smoothed one from the matched one.
 
 What is not confirmed both ways is given up, not filled: filled in by the filter, the reconstruction
-of a room has from half as many again to thrice the outliers. With 1 px instead of 2 the pixels that
+of a room has 1.5 to 3 times as many outliers. With 1 px instead of 2 the pixels that
 remain are hardly better, and 2 % of the good ones are gone.
 """
 SMOOTHING, GREY_SIGMA = 300.0, 1.5
@@ -47,7 +47,7 @@ SURE_DEVIATION_PX = 1.0
 SURE_RADIUS = 3
 """A disparity counts less the more those around it deviate from each other, as in that filter."""
 SPECKLE_PX = 100
-"""A patch of fewer pixels that hangs together with nothing is taken for noise."""
+"""A connected patch of fewer pixels is taken for noise."""
 
 
 @dataclass(frozen=True, eq=False)

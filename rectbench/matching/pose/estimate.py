@@ -1,4 +1,4 @@
-"""How the right camera stands to the left one, from matches or images, for lenses of any width.
+"""The pose of the right camera relative to the left one, from matches or images, for lenses of any width.
 
 Zhou, Dai and Li, Algorithm 1, steps 1 and 2: features, five points, robust consensus, bundle adjustment;
 on rays throughout, so that a lens may see 180 degrees and more.

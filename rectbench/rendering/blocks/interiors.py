@@ -101,7 +101,7 @@ def enamel(seed: int, colour: Colour, *, glossy: bool = True, wear: float = 1.0)
 
 
 def rug(seed: int, ground: Colour = (0.33, 0.075, 0.06), figure: Colour = (0.52, 0.40, 0.24)) -> Finish:
-    """A knotted carpet for a card of uv 0..1, 3 : 2: border, medallions, abrash."""
+    """A knotted carpet for a card of uv 0..1, 3 : 2: border, medallions, uneven dye."""
     noise = Noise.of(seed, 47, 512, 768)
     height, width = noise.height, noise.width
     y, x = np.mgrid[:height, :width].astype(np.float32)
@@ -116,5 +116,5 @@ def rug(seed: int, ground: Colour = (0.33, 0.075, 0.06), figure: Colour = (0.52,
     zigzag = np.sin((x + y + wander) / 9.0) * np.sin((x - y) / 11.0)
     texels = blend(blend(night, figure, smoothstep(-0.1, 0.25, zigzag)), field, smoothstep(62.0, 66.0, edge))
     texels = blend(texels, figure, (np.abs(edge - 64.0) < 5.0) | (np.abs(edge - 8.0) < 4.0))
-    abrash = 1.0 + 0.14 * noise.fractal(0.4) + 0.12 * noise.fractal(2.2)
-    return Finish("rug", Material(reflectance(texels * abrash)), seamless=False)
+    dye = 1.0 + 0.14 * noise.fractal(0.4) + 0.12 * noise.fractal(2.2)
+    return Finish("rug", Material(reflectance(texels * dye)), seamless=False)

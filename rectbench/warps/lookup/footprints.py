@@ -29,7 +29,7 @@ UNSHRUNK = 1.01
 MOST_SAMPLES = 64
 """A pixel that needs more reads them from the source image halved as often as it takes.
 
-With 16 the error against 16 x 16 samples is thrice as large where an image is made 5 times smaller.
+With 16 the error against 16 x 16 samples is three times as large where an image is made 5 times smaller.
 """
 WHOLE = 1e-3
 """A number of samples this little above a whole one is that one."""

@@ -18,7 +18,7 @@ import numpy as np
 
 from rectbench.calibrations.assembling import inverse, rig_of_posed, rigid, single
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
-from rectbench.calibrations.documents import Section, Source, blaming
+from rectbench.calibrations.documents import Section, Source, errors_at
 from rectbench.calibrations.formats.toolboxes.opencv import camera_matrix, opencv_camera
 from rectbench.cameras import Camera
 from rectbench.rigs.rig import Rig
@@ -45,7 +45,7 @@ def _read_rectified(file: Section, name: str, given: Given) -> PosedCamera:
     P = file.array(name, "12 numbers, a 3x4 projection", (12,)).reshape(3, 4)
     size = file.sides("width", "height", given.size)
     K = Section(file.file, file.key, {name: P[:, :3].tolist()})
-    with blaming(file.at(name)):
+    with errors_at(file.at(name)):
         camera = Camera("pinhole", size, camera_matrix(K, name, "pinhole"))
         return PosedCamera(file.at(name), camera, rigid(np.eye(3), -np.linalg.solve(P[:, :3], P[:, 3])))
 

@@ -1,7 +1,7 @@
 """The INI of ROS' camera_calibration, `ost.txt` or `.ini`, of one camera, or of a pair one after the other.
 
 Labels stand alone in a line, such as `camera matrix`, above their numbers. Of a pair the first camera is the
-left one. What the numbers mean, and where the pose is, `calibrations.devices.ros` says; the distortion is
+left one. What the numbers mean, and where the pose is, `formats.devices.ros` says; the distortion is
 plumb_bob, or rational_polynomial where there are eight coefficients.
 """
 

@@ -20,7 +20,7 @@ import numpy as np
 
 from rectbench.calibrations.assembling import rigid
 from rectbench.calibrations.contract import CameraFormat, Given, PosedCamera
-from rectbench.calibrations.documents import Section, Source, blaming
+from rectbench.calibrations.documents import Section, Source, errors_at
 from rectbench.calibrations.formats.toolboxes.opencv import (
     COUNTS,
     FOCAL,
@@ -82,14 +82,14 @@ def rectified_place(file: Section, R_key: str, P_key: str) -> FloatArray | None:
     R = file.array(R_key, "the 3x3 rectification matrix", (9,)).reshape(3, 3)
     if not np.any(R) or not np.any(P):  # how an uncalibrated camera is published
         return None
-    with blaming(file.at(R_key)):
+    with errors_at(file.at(R_key)):
         R = checked_rotation(R, "it")
     focal = P[[0, 1, 2], [0, 1, 2]]
     if not (np.all(focal > 0) and focal[2] == 1):
         raise InvalidInput(
             f"{file.at(P_key)} has no focal length; expected [fx 0 cx Tx; 0 fy cy Ty; 0 0 1 0]"
         )
-    with blaming(file.at(P_key)):
+    with errors_at(file.at(P_key)):
         return rigid(R, -np.linalg.solve(P[:, :3], P[:, 3]))
 
 

@@ -5,7 +5,7 @@ OpenVINS' `estimator_config.yaml` leads to its chain by `relative_config_imucam`
 The projections and their numbers are those of Kalibr's wiki, "Supported models" and "YAML formats".
 The pose is `T_cn_cnm1` of cam1, which takes points of cam0 to cam1; where that is missing, the two
 cameras' `T_cam_imu` (points of the IMU to the camera; OpenVINS may write its inverse, `T_imu_cam`).
-A camera without `camera_model` is a pinhole, as Kalibr's offspring leave it out.
+A camera without `camera_model` is a pinhole, as other programs that write chains leave it out.
 Of a longer chain any two cameras make a rig.
 Translations are metres, pixel (0, 0) is the centre of a pixel, there is no skew. Written are cam0, cam1
 and its `T_cn_cnm1`.
@@ -63,7 +63,7 @@ LAYOUTS = {
 are no camera that it has."""
 
 
-OFFSPRING = {
+OTHERS_LAYOUTS = {
     ("pinhole", "rational_polynomial"): Layout("pinhole", FOCAL, (*RADTAN, "k3", "k4", "k5", "k6")),
     ("pinhole", "plumb_bob"): Layout("pinhole", FOCAL, (*RADTAN, "k3")),
 }
@@ -140,7 +140,7 @@ def _from_imu(camera: Section) -> FloatArray:
 def _read_camera(section: Section, size: tuple[int, int] | None) -> Camera:
     expected = "pinhole, omni, ds or eucm"
     projection = section.text("camera_model", expected) if "camera_model" in section else "pinhole"
-    layouts = LAYOUTS | OFFSPRING
+    layouts = LAYOUTS | OTHERS_LAYOUTS
     known = [distortion for name, distortion in layouts if name == projection]
     if not known:
         raise section.fault("camera_model", expected)

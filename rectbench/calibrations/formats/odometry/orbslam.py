@@ -5,7 +5,7 @@ and `Stereo.T_c1_c2` (older: `Tlr`), which takes points of the right camera to t
 Rectified images have Camera1 alone, and the baseline `Stereo.b`; in ORB-SLAM2's settings, Camera and
 `Camera.bf`, the baseline times fx. A `DepthMapFactor` marks the settings of an RGB-D camera, of no rig.
 ORB-SLAM2: `LEFT.K`, `LEFT.D`, `LEFT.R`, `LEFT.P` and `RIGHT.*`, as `cv2.stereoRectify` gives them; P[0, 3] of
-RIGHT is -fx' B, see `calibrations.devices.ros`. Four coefficients in LEFT.D are still the pinhole's.
+RIGHT is -fx' B, see `formats.devices.ros`. Four coefficients in LEFT.D are still the pinhole's.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The configuration of VINS-Fusion, VINS-Fisheye and their kin: camera files and body_T_cam0, body_T_cam1.
+"""The configuration of VINS-Fusion, VINS-Fisheye and the like: camera files and body_T_cam0, body_T_cam1.
 
 `body_T_cam0` takes points of camera 0 to the body (IMU), in metres, as the VINS-Fusion maintainers
 state it. `cam0_calib` and `cam1_calib` name the CamOdoCal files of the cameras, beside the configuration.

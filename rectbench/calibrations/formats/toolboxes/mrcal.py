@@ -24,7 +24,7 @@ from scipy.spatial.transform import Rotation
 
 from rectbench.calibrations.assembling import camera_of, inverse, pose_matrix, rigid
 from rectbench.calibrations.contract import CameraFormat, Given, PosedCamera
-from rectbench.calibrations.documents import Section, Source, blaming, shown
+from rectbench.calibrations.documents import Section, Source, errors_at, shown
 from rectbench.calibrations.documents.sources import MAX_BYTES, read_bytes
 from rectbench.calibrations.layouts import layout_of
 from rectbench.cameras import Camera
@@ -104,7 +104,7 @@ def _pose(file: Section) -> FloatArray | None:
     if key is None:
         return None
     rt = file.numbers(key, "a rotation vector and a translation, six finite numbers", 6)
-    with blaming(file.at(key)):
+    with errors_at(file.at(key)):
         R = checked_rotation(Rotation.from_rotvec(rt[:3]).as_matrix(), "its rotation")
     return inverse(rigid(R, rt[3:]))
 

@@ -20,7 +20,7 @@ from numpy.polynomial import Polynomial
 
 from rectbench.calibrations.assembling import camera_of
 from rectbench.calibrations.contract import CameraFormat, Given, PosedCamera
-from rectbench.calibrations.documents import Source, agreed_size, blaming, finite_number, shown
+from rectbench.calibrations.documents import Source, agreed_size, errors_at, finite_number, shown
 from rectbench.calibrations.layouts import layout_of
 from rectbench.calibrations.pose_file import pose_text
 from rectbench.cameras import Camera
@@ -61,7 +61,7 @@ def stretched(
     (a, b), (c, d) = stretch
     if not (a > 0 and abs(d - 1) < 1e-6):
         raise InvalidInput(f"{where} stretches by {a:g} and {d:g}; expected a number above 0 and 1")
-    with blaming(where):
+    with errors_at(where):
         return {
             "cx": centre[0],
             "cy": centre[1],
