@@ -1,4 +1,7 @@
-"""A rig from what the files of its cameras say: which two of many, in which frame, in which unit."""
+"""A rig from what the files of its cameras say: which two of many, in which frame, in which unit.
+
+Poses on the way are rigid transformations [4, 4], X_a = T_a_b X_b.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is really there at the pixels of a rectified left image: depth, disparity, visibility.
+"""The ground truth at the pixels of a rectified left image: depth, disparity, visibility.
 
 The rays of the rectified pixels themselves are cast, so nothing is resampled: a disparity is that of
 the surface at the pixel's centre, at the edges of things as well.

@@ -1,4 +1,4 @@
-"""What is really there: depth, points, visibility and correspondences of a rendered rig.
+"""The ground truth of a rendered rig: depth, points, visibility and correspondences.
 
 Only the depth comes from the renderer. A point is its pixel's float64 ray times that depth, so it
 projects back onto the pixel's centre, and its projection into the other camera obeys the epipolar

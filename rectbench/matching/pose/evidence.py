@@ -1,4 +1,4 @@
-"""What tells a pose from an accident: points ahead of both cameras, chance, a turn alone, no motion."""
+"""Tests that a pose is no accident: points ahead of both cameras, chance, a turn alone, no motion."""
 
 from __future__ import annotations
 

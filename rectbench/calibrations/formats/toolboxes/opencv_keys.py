@@ -1,4 +1,4 @@
-"""How files of OpenCV's calibrations call what they hold, and where in several files it is looked for."""
+"""The keys that files of OpenCV calibrations use, and the search for them over several files."""
 
 from __future__ import annotations
 
