@@ -1,6 +1,6 @@
 """The projection models, one a file, each registered when imported. Imports files of cameras and formulas."""
 
-from rectbench.cameras.models import (  # noqa: F401  (importing them registers them)
+from rectbench.cameras.models import (  # noqa: F401
     cahvor,
     division,
     double_sphere,
