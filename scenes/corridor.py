@@ -26,14 +26,10 @@ def corridor(seed: int) -> rb.World:
         *under_the_ceiling(seed, rng),
         *at_the_ends(seed, rng),
     ]
+    place = rng.uniform(-0.50, -0.42), rng.uniform(-0.4, 0.4), rng.uniform(1.45, 1.65)
     return rb.World(
         meshes=rb.blocks.meshes(models),
-        world_from_left=rb.blocks.stand(
-            rng.uniform(-0.50, -0.42),
-            rng.uniform(-0.4, 0.4),
-            rng.uniform(1.45, 1.65),
-            yaw_deg=rng.normal(0, 2),
-        ),
+        world_from_left=rb.blocks.stand(*place, yaw_deg=rng.normal(0, 2)),
         lamps=lamps(),
         exposure=1.9,
         fast_exposure=1.5,
@@ -85,10 +81,8 @@ def along_the_walls(seed: int, rng: np.random.Generator) -> list[rb.blocks.Model
     """Doors in turn with posters, notice boards, radiators, lockers and extinguishers."""
     b = rb.blocks
     leaves = [b.timber(seed + 2, b.WALNUT), b.enamel(seed, (0.07, 0.17, 0.22)), b.timber(seed + 3, b.PINE)]
-    frame, steel = (
-        b.enamel(seed + 1, (0.50, 0.49, 0.44), glossy=False),
-        b.enamel(seed + 2, (0.40, 0.40, 0.39), wear=0.6),
-    )
+    frame = b.enamel(seed + 1, (0.50, 0.49, 0.44), glossy=False)
+    steel = b.enamel(seed + 2, (0.40, 0.40, 0.39), wear=0.6)
     prints, cork = b.posters(seed), b.cloth(seed, (0.30, 0.18, 0.09))
     green, red = b.enamel(seed + 3, (0.12, 0.22, 0.20)), b.enamel(seed + 4, (0.42, 0.05, 0.04))
     black, white = (
@@ -105,18 +99,14 @@ def along_the_walls(seed: int, rng: np.random.Generator) -> list[rb.blocks.Model
             middle = y + 1.45
             match (k + (side > 0) + seed) % 4:
                 case 0:
-                    models.append(
-                        on_wall(b.notice_board(cork, leaves[2], prints, rng, width=1.3), side, middle, 1.2)
-                    )
+                    board = b.notice_board(cork, leaves[2], prints, rng, width=1.3)
+                    models.append(on_wall(board, side, middle, 1.2))
                     models.append(on_wall(b.radiator(white, width=1.0), side, middle))
                 case 1:
                     models.append(on_wall(b.lockers(green, steel, count=4), side, middle))
                 case 2:
-                    models.append(
-                        on_wall(
-                            b.picture(prints, black, painting(rng), width=0.9, height=1.2), side, middle, 1.2
-                        )
-                    )
+                    framed = b.picture(prints, black, painting(rng), width=0.9, height=1.2)
+                    models.append(on_wall(framed, side, middle, 1.2))
                     models.append(on_wall(b.extinguisher(red, black), side, middle + 0.4, 0.3))
                 case _:
                     for offset, size in ((-0.35, 0.5), (0.35, 0.42)):
@@ -145,11 +135,8 @@ def on_the_floor(seed: int, rng: np.random.Generator) -> list[rb.blocks.Model]:
     b = rb.blocks
     oak, cloth = b.timber(seed + 10, b.OAK), b.cloth(seed + 1, (0.26, 0.06, 0.05), (0.42, 0.22, 0.08))
     iron, boxes = b.enamel(seed + 10, (0.06, 0.065, 0.07)), b.parcels(seed)
-    clay, soil, palm = (
-        b.plaster(seed + 3, (0.36, 0.15, 0.08)),
-        b.forest_floor(seed),
-        b.foliage(seed, (0.06, 0.17, 0.04)),
-    )
+    clay, soil = b.plaster(seed + 3, (0.36, 0.15, 0.08)), b.forest_floor(seed)
+    palm = b.foliage(seed, (0.06, 0.17, 0.04))
     plants = [b.potted_plant(seed + k, clay, soil, palm, height=1.0 + 0.3 * k) for k in range(2)]
     models = [
         b.chair(oak, cloth).at(1.2, 3.2 + rng.uniform(-0.2, 0.2), turn_deg=rng.uniform(240, 280)),
@@ -182,10 +169,8 @@ def under_the_ceiling(seed: int, rng: np.random.Generator) -> list[rb.blocks.Mod
     """Painted pipes with flanges, a cable tray, hanging signs."""
     b = rb.blocks
     red, blue = b.enamel(seed + 20, (0.38, 0.07, 0.05)), b.enamel(seed + 21, (0.09, 0.20, 0.32))
-    steel, copper = (
-        b.enamel(seed + 22, (0.42, 0.42, 0.40), wear=1.5),
-        b.enamel(seed + 23, (0.42, 0.19, 0.10), wear=1.5),
-    )
+    steel = b.enamel(seed + 22, (0.42, 0.42, 0.40), wear=1.5)
+    copper = b.enamel(seed + 23, (0.42, 0.19, 0.10), wear=1.5)
     models = []
     for x, z, radius, finish in (
         (-1.45, 2.6, 0.06, red),
@@ -210,9 +195,7 @@ def under_the_ceiling(seed: int, rng: np.random.Generator) -> list[rb.blocks.Mod
     prints = b.posters(seed + 1)
     for y in (5.5, 11.5, 17.0):
         sign = b.panel(0.7, 0.3).at(-0.35, y, 2.2)
-        wires = b.rod((-0.3, y, 2.5), (-0.3, y, HEIGHT), 0.004, 4) + b.rod(
-            (0.3, y, 2.5), (0.3, y, HEIGHT), 0.004, 4
-        )
+        wires = b.join(b.rod((x, y, 2.5), (x, y, HEIGHT), 0.004, 4) for x in (-0.3, 0.3))
         models += [prints.on(sign, 2 + 3 * int(rng.integers(8))), wires.of(steel)]
     return models
 
@@ -235,10 +218,5 @@ def at_the_ends(seed: int, rng: np.random.Generator) -> list[rb.blocks.Model]:
         b.door(red, frame, steel, prints, int(rng.integers(24))).at(0.6, NEAR_Y, turn_deg=180),
         b.picture(prints, frame, painting(rng), width=0.9, height=1.2).at(-0.8, NEAR_Y, 1.0, turn_deg=180),
     ]
-    return [
-        b.quads(ends).of(wall),
-        clock.of(b.plaster(seed, (0.62, 0.60, 0.54))),
-        hands.of(steel),
-        *far,
-        *near,
-    ]
+    clock_face = b.plaster(seed, (0.62, 0.60, 0.54))
+    return [b.quads(ends).of(wall), clock.of(clock_face), hands.of(steel), *far, *near]

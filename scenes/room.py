@@ -28,15 +28,10 @@ def room(seed: int) -> rb.World:
         *odds_and_ends(seed, rng),
         *garden(seed),
     ]
+    place = rng.uniform(-0.6, -0.3), rng.uniform(-0.9, -0.6), rng.uniform(1.45, 1.65)
     return rb.World(
         meshes=rb.blocks.meshes(models),
-        world_from_left=rb.blocks.stand(
-            rng.uniform(-0.6, -0.3),
-            rng.uniform(-0.9, -0.6),
-            rng.uniform(1.45, 1.65),
-            yaw_deg=rng.normal(0, 3),
-            pitch_deg=-4,
-        ),
+        world_from_left=rb.blocks.stand(*place, yaw_deg=rng.normal(0, 3), pitch_deg=-4),
         lamps=(
             rb.Lamp((-1.5, 0.3, HEIGHT - 0.02), (0.9, 0.4), (26.0, 24.0, 20.5)),
             rb.Lamp((-1.4, 3.6, HEIGHT - 0.02), (0.9, 0.4), (26.0, 24.0, 20.5)),
@@ -59,11 +54,11 @@ def walls(seed: int) -> list[rb.blocks.Model]:
     b = rb.blocks
     width, depth = EAST - WEST, NORTH - SOUTH
     middle = (NORTH + SOUTH) / 2
-    white, oak, stone = (
-        b.enamel(seed, (0.58, 0.57, 0.52), glossy=False, wear=0.6),
-        b.timber(seed, b.WALNUT),
-        b.concrete(seed),
-    )
+    white = b.enamel(seed, (0.58, 0.57, 0.52), glossy=False, wear=0.6)
+    walnut, stone = b.timber(seed, b.WALNUT), b.concrete(seed)
+    print_ = choice(seed, [(0.22, 0.09, 0.06), (0.07, 0.12, 0.20), (0.26, 0.17, 0.04)])
+    paint = choice(seed, [(0.56, 0.49, 0.35), (0.42, 0.50, 0.46), (0.52, 0.36, 0.26)])
+    ceiling = b.floor((WEST - 0.4, EAST + 0.4), (SOUTH - 0.4, NORTH + 0.4), HEIGHT)
     north, west = b.Opening(*NORTH_WINDOW), b.Opening(*WEST_WINDOW)
     beams = [b.plank(width, 0.16, 0.17).at(0, y, HEIGHT - 0.17) for y in np.arange(SOUTH + 0.6, NORTH, 1.5)]
     skirts = b.boxes(
@@ -74,26 +69,15 @@ def walls(seed: int) -> list[rb.blocks.Model]:
         [(EAST, SOUTH, 0), (EAST, NORTH, 0), (EAST, NORTH, HEIGHT), (EAST, SOUTH, HEIGHT)],
         [(WEST, SOUTH, 0), (EAST, SOUTH, 0), (EAST, SOUTH, HEIGHT), (WEST, SOUTH, HEIGHT)],
     ])  # fmt: skip
+    wall_west = b.pierced_wall(depth, HEIGHT, [west])
     glazing = [_casement(o, white, stone) for o in (north, west)]
     return [
         b.floor((WEST, EAST), (SOUTH, NORTH)).of(b.floorboards(seed)),
-        b.floor((WEST - 0.4, EAST + 0.4), (SOUTH - 0.4, NORTH + 0.4), HEIGHT).of(
-            b.plaster(seed, (0.72, 0.69, 0.62))
-        ),
-        b.pierced_wall(width, HEIGHT, [north]).at(0, NORTH).of(b.wallpaper(seed)),
-        b.pierced_wall(depth, HEIGHT, [west])
-        .at(WEST, middle, turn_deg=90)
-        .of(
-            b.wallpaper(
-                seed + 1,
-                (0.46, 0.36, 0.26),
-                choice(seed, [(0.22, 0.09, 0.06), (0.07, 0.12, 0.20), (0.26, 0.17, 0.04)]),
-            )
-        ),
-        plain.of(
-            b.wall_paint(seed, choice(seed, [(0.56, 0.49, 0.35), (0.42, 0.50, 0.46), (0.52, 0.36, 0.26)]))
-        ),
-        b.join(beams).of(oak),
+        ceiling.of(b.plaster(seed, (0.72, 0.69, 0.62))),
+        b.pierced_wall(width, HEIGHT, [north]).of(b.wallpaper(seed)).at(0, NORTH),
+        wall_west.at(WEST, middle, turn_deg=90).of(b.wallpaper(seed + 1, (0.46, 0.36, 0.26), print_)),
+        plain.of(b.wall_paint(seed, paint)),
+        b.join(beams).of(walnut),
         skirts.of(white),
         glazing[0].at(0, NORTH),
         glazing[1].at(WEST, middle, turn_deg=90),
@@ -176,11 +160,8 @@ def sofa_corner(seed: int, rng: np.random.Generator) -> list[rb.blocks.Model]:
     fabric = b.cloth(seed + 1, choice(seed, [(0.30, 0.12, 0.055), (0.07, 0.16, 0.15), (0.30, 0.20, 0.06)]))
     cushion, oak = b.cloth(seed + 2, (0.10, 0.20, 0.20), (0.42, 0.36, 0.20)), b.timber(seed + 3, b.OAK)
     iron, shade = b.enamel(seed + 7, (0.06, 0.055, 0.05)), b.cloth(seed + 3, (0.56, 0.47, 0.32))
-    clay, soil, palm = (
-        b.plaster(seed + 1, (0.36, 0.15, 0.08)),
-        b.forest_floor(seed),
-        b.foliage(seed + 2, (0.06, 0.18, 0.045)),
-    )
+    clay, soil = b.plaster(seed + 1, (0.36, 0.15, 0.08)), b.forest_floor(seed)
+    palm = b.foliage(seed + 2, (0.06, 0.18, 0.045))
     rug = b.cards([[(-2.0, 0.35, 0.012), (0.55, 0.35, 0.012), (0.55, 2.1, 0.012), (-2.0, 2.1, 0.012)]])
     return [
         b.sofa(fabric, cushion, oak).at(-3.0, rng.uniform(1.2, 1.7), turn_deg=90),
@@ -200,11 +181,8 @@ def desk_corner(seed: int, rng: np.random.Generator) -> list[rb.blocks.Model]:
     """A desk on the east wall with screen, lamp, papers, and the cables that hang off it."""
     b = rb.blocks
     wood, black = b.timber(seed + 4, b.WALNUT), b.enamel(seed + 8, (0.05, 0.05, 0.055), wear=0.5)
-    brass, seat, prints = (
-        b.enamel(seed + 9, (0.46, 0.32, 0.11)),
-        b.cloth(seed + 4, (0.10, 0.10, 0.11)),
-        b.posters(seed + 2),
-    )
+    brass, prints = b.enamel(seed + 9, (0.46, 0.32, 0.11)), b.posters(seed + 2)
+    seat = b.cloth(seed + 4, (0.10, 0.10, 0.11))
     x, y, top = EAST - 0.4, 0.5 + rng.uniform(-0.15, 0.15), 0.74
     papers = [
         prints.on(b.cards([[(-0.1, -0.14, 0), (0.1, -0.14, 0), (0.1, 0.14, 0), (-0.1, 0.14, 0)]]), 2 + 3 * k)
@@ -230,18 +208,16 @@ def hangings(seed: int, rng: np.random.Generator) -> list[rb.blocks.Model]:
     """Pictures on the walls, a string of bunting across the room, a clothes line of cables."""
     b = rb.blocks
     prints, frame = b.posters(seed), b.timber(seed + 5, b.WALNUT)
-    east = [
-        b.picture(prints, frame, int(rng.integers(24)), width=w, height=w * 4 / 3).at(
-            EAST, y, z, turn_deg=-90
-        )
-        for y, z, w in (
-            (2.0, 1.2, 0.62),
-            (2.95, 1.35, 0.48),
-            (3.75, 1.15, 0.66),
-            (-0.55, 1.35, 0.5),
-            (-1.5, 1.2, 0.62),
-        )
-    ]
+    east = []
+    for y, z, w in (
+        (2.0, 1.2, 0.62),
+        (2.95, 1.35, 0.48),
+        (3.75, 1.15, 0.66),
+        (-0.55, 1.35, 0.5),
+        (-1.5, 1.2, 0.62),
+    ):
+        framed = b.picture(prints, frame, int(rng.integers(24)), width=w, height=w * 4 / 3)
+        east.append(framed.at(EAST, y, z, turn_deg=-90))
     south = [
         b.picture(prints, frame, int(rng.integers(24))).at(x, SOUTH, 1.2, turn_deg=180) for x in (-1.3, 0.9)
     ]
@@ -250,21 +226,16 @@ def hangings(seed: int, rng: np.random.Generator) -> list[rb.blocks.Model]:
         for y in (3.2, -1.2)
     ]
     line = b.enamel(seed + 11, (0.30, 0.26, 0.20), glossy=False)
-    flags = [
-        b.cloth(seed + 5 + k, c)
-        for k, c in enumerate([(0.40, 0.08, 0.06), (0.10, 0.20, 0.30), (0.46, 0.33, 0.10)])
-    ]
+    colours = [(0.40, 0.08, 0.06), (0.10, 0.20, 0.30), (0.46, 0.33, 0.10)]
+    flags = [b.cloth(seed + 5 + k, colour) for k, colour in enumerate(colours)]
     bunting = []
     for start, end in (((WEST, 4.2, 2.5), (EAST, 2.2, 2.5)), ((WEST, -0.2, 2.5), (EAST, 4.4, 2.55))):
         bunting.append(b.cable(start, end, 0.22, 0.003).of(line))
         for k, t in enumerate(np.linspace(0.04, 0.96, 21)):
-            x, y, z = (
-                np.asarray(start) + t * (np.asarray(end) - np.asarray(start)) - [0, 0, 0.88 * t * (1 - t)]
-            )
-            swing = rng.normal(0, 0.02)
-            flag = b.quads(
-                [[(x - 0.09, y, z), (x, y + swing, z - 0.2), (x, y + swing, z - 0.2), (x + 0.09, y, z)]]
-            )
+            straight = np.asarray(start) + t * (np.asarray(end) - np.asarray(start))
+            x, y, z = straight - [0, 0, 0.88 * t * (1 - t)]
+            tip = (x, y + rng.normal(0, 0.02), z - 0.2)
+            flag = b.quads([[(x - 0.09, y, z), tip, tip, (x + 0.09, y, z)]])
             bunting.append(flag.of(flags[k % 3]))
     return [*east, *south, *west, *bunting]
 
@@ -273,26 +244,22 @@ def odds_and_ends(seed: int, rng: np.random.Generator) -> list[rb.blocks.Model]:
     """Parcels, a ladder, a stool, a bicycle against the wall, a door, flex on the floor."""
     b = rb.blocks
     boxes, wood = b.parcels(seed), b.timber(seed + 6, b.PINE)
-    steel, tyre = (
-        b.enamel(seed + 12, (0.38, 0.38, 0.37)),
-        b.enamel(seed + 13, (0.05, 0.05, 0.05), glossy=False),
-    )
+    steel = b.enamel(seed + 12, (0.38, 0.38, 0.37))
+    tyre = b.enamel(seed + 13, (0.05, 0.05, 0.05), glossy=False)
+    door = b.door(b.timber(seed + 7, b.OAK), wood, steel, b.posters(seed), int(rng.integers(24)))
     models = [
         b.step_ladder(wood, steel).at(2.9, 4.2, turn_deg=30),
         b.stool(wood).at(0.55, 3.6),
         b.stool(wood).at(-2.3, -0.8),
-        b.door(b.timber(seed + 7, b.OAK), wood, steel, b.posters(seed), int(rng.integers(24))).at(
-            2.7, SOUTH, turn_deg=180
-        ),
+        door.at(2.7, SOUTH, turn_deg=180),
         b.cable((-3.2, 3.0, 0.02), (-0.2, 3.3, 0.02), 0.0, 0.006).of(tyre),
     ]
     for x, y, count in ((3.1, -0.9, 3), (2.55, -1.3, 2), (-1.0, 3.5, 2), (-3.2, -1.5, 3)):
         z = 0.0
         for _ in range(count):
             size = (rng.uniform(0.3, 0.48), rng.uniform(0.3, 0.42), rng.uniform(0.18, 0.34))
-            models.append(
-                b.parcel(boxes, size, int(rng.integers(16))).at(x, y, z, turn_deg=rng.normal(0, 14))
-            )
+            parcel = b.parcel(boxes, size, int(rng.integers(16)))
+            models.append(parcel.at(x, y, z, turn_deg=rng.normal(0, 14)))
             z += size[2]
     return models
 

@@ -28,14 +28,10 @@ def street(seed: int) -> rb.World:
         *parked_cars(seed, rng),
         *trees(seed, rng, front_y),
     ]
+    place = rng.uniform(-1.0, 0.6), rng.uniform(-0.2, 0.3), PAVEMENT_Z + rng.uniform(1.5, 1.7)
     return rb.World(
         meshes=rb.blocks.meshes(models),
-        world_from_left=rb.blocks.stand(
-            rng.uniform(-1.0, 0.6),
-            rng.uniform(-0.2, 0.3),
-            PAVEMENT_Z + rng.uniform(1.5, 1.7),
-            yaw_deg=rng.normal(0, 2.5),
-        ),
+        world_from_left=rb.blocks.stand(*place, yaw_deg=rng.normal(0, 2.5)),
         sun=rb.Sun((rng.uniform(-0.75, -0.35), rng.uniform(-0.55, -0.38), 0.75), turbidity=3.0),
         exposure=3.7,
         fast_exposure=0.6,
@@ -79,10 +75,8 @@ def houses(seed: int, rng: np.random.Generator, front_y: float) -> list[rb.block
     stone = b.concrete(seed, (0.47, 0.44, 0.38))
     panes = b.window_panes(seed)
     roofs = [b.roof_tiles(seed), b.roof_tiles(seed + 1, (0.13, 0.125, 0.13))]
-    doors = [
-        b.enamel(seed + k, c)
-        for k, c in enumerate([(0.05, 0.16, 0.11), (0.30, 0.05, 0.045), (0.06, 0.11, 0.25)])
-    ]
+    colours = [(0.05, 0.16, 0.11), (0.30, 0.05, 0.045), (0.06, 0.11, 0.25)]
+    doors = [b.enamel(seed + k, colour) for k, colour in enumerate(colours)]
     walls = [
         b.brick(seed, RED_BRICKS[seed % len(RED_BRICKS)]),
         b.brick(seed + 1, b.YELLOW_BRICK, rows=64, columns=32),
@@ -92,9 +86,8 @@ def houses(seed: int, rng: np.random.Generator, front_y: float) -> list[rb.block
     ]
 
     def dressed(wall: int) -> rb.blocks.HouseFinishes:
-        return b.HouseFinishes(
-            walls[wall], trim, stone, roofs[int(rng.integers(2))], doors[int(rng.integers(3))], panes
-        )
+        roof, door = roofs[int(rng.integers(2))], doors[int(rng.integers(3))]
+        return b.HouseFinishes(walls[wall], trim, stone, roof, door, panes)
 
     def row(first: int, start_x: float, step: int) -> list[rb.blocks.Model]:
         built, x = [], start_x
@@ -108,11 +101,8 @@ def houses(seed: int, rng: np.random.Generator, front_y: float) -> list[rb.block
     half = rng.uniform(6.6, 7.6)
     main = b.house(rng, dressed(0), width=2 * half, storeys=3)
     shift = int(rng.integers(4))
-    across = [
-        main,
-        *row(shift, half + rng.uniform(0.05, 2.5), 1),
-        *row(shift + 2, -half - rng.uniform(0.05, 2.5), -1),
-    ]
+    east = row(shift, half + rng.uniform(0.05, 2.5), 1)
+    across = [main, *east, *row(shift + 2, -half - rng.uniform(0.05, 2.5), -1)]
     behind = [*row(shift + 1, rng.uniform(-3, 3), 1), *row(shift + 3, -4.5, -1)]
     return [
         *(model.at(0, front_y, PAVEMENT_Z) for model in across),
@@ -149,11 +139,8 @@ def street_furniture(seed: int, rng: np.random.Generator, front_y: float) -> lis
     for _ in range(9):
         width, depth, height = rng.uniform(0.25, 0.6, 3)
         x, y = rng.choice([-5.6, 6.9, 9.5, -10.8]) + rng.uniform(-0.8, 0.8), wall_y + rng.uniform(-0.3, 0.2)
-        things.append(
-            b.parcel(boxes, (width, depth, height), int(rng.integers(16))).at(
-                x, y, z, turn_deg=rng.uniform(-30, 30)
-            )
-        )
+        parcel = b.parcel(boxes, (width, depth, height), int(rng.integers(16)))
+        things.append(parcel.at(x, y, z, turn_deg=rng.uniform(-30, 30)))
     return things
 
 
@@ -161,27 +148,15 @@ def parked_cars(seed: int, rng: np.random.Generator) -> list[rb.blocks.Model]:
     """Cars along both kerbs, with a gap before the main door."""
     b = rb.blocks
     colours = [
-        (0.32, 0.035, 0.03),
-        (0.045, 0.11, 0.24),
-        (0.50, 0.49, 0.46),
-        (0.07, 0.16, 0.10),
-        (0.52, 0.38, 0.10),
-    ]
+        (0.32, 0.035, 0.03), (0.045, 0.11, 0.24), (0.50, 0.49, 0.46), (0.07, 0.16, 0.10), (0.52, 0.38, 0.10),
+    ]  # fmt: skip
     paints = [b.enamel(seed + 30 + k, colours[k], wear=0.35) for k in rng.permutation(5)]
     glass, trim = b.enamel(seed + 36, (0.06, 0.075, 0.085), wear=0.4), b.enamel(seed + 37, (0.42, 0.42, 0.41))
     tyre = b.enamel(seed + 38, (0.04, 0.04, 0.042), glossy=False)
     places = [
-        (-7.4, 6.0),
-        (7.2, 6.0),
-        (12.6, 6.05),
-        (-12.9, 5.95),
-        (-18.4, 6.0),
-        (19.5, 6.0),
-        (9.6, 1.95),
-        (-9.4, 1.95),
-        (15.2, 1.9),
-        (-16.0, 1.95),
-    ]
+        (-7.4, 6.0), (7.2, 6.0), (12.6, 6.05), (-12.9, 5.95), (-18.4, 6.0), (19.5, 6.0),
+        (9.6, 1.95), (-9.4, 1.95), (15.2, 1.9), (-16.0, 1.95),
+    ]  # fmt: skip
     return [
         b.car(paints[k % 5], glass, tyre, trim).at(
             x + rng.uniform(-0.5, 0.5), y, turn_deg=rng.normal(0, 1) + 180 * (y > 4)

@@ -1,17 +1,17 @@
-"""A rig from what the files of its cameras say: which two of many, in which frame, in which unit."""
+"""A rig from what the files of its cameras say: which two of many, in which frame, in which unit.
+
+Poses on the way are rigid transformations [4, 4], X_a = T_a_b X_b.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from rectbench.calibrations.contract import UNITS, Given, PosedCamera
-from rectbench.calibrations.documents.faults import blaming, shown
-from rectbench.calibrations.documents.sources import Source
-from rectbench.calibrations.transforms import inverse
+from rectbench.calibrations.documents import Section, Source, errors_at, shown
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig
@@ -48,7 +48,7 @@ def assembled(
         raise InvalidInput(f"{where}: is in {unit}; expected unit={given.unit!r} as given beside the file")
     stated = unit or given.unit
     T = np.asarray(T_right_left, dtype=np.float64)
-    with blaming(where):
+    with errors_at(where):
         rig = Rig(left, right, T[:3, :3], UNITS[stated or "m"] * T[:3, 3], name=name)
     if stated is None and rig.baseline_m > LONGEST_BASELINE_M:
         raise InvalidInput(
@@ -56,6 +56,19 @@ def assembled(
             "or unit='mm' (or cm, in, ft, m) stating what the file's translations are in"
         )
     return rig
+
+
+def side_by_side(
+    left: Camera,
+    right: Camera,
+    baseline: float,
+    given: Given,
+    where: str,
+    name: str,
+    unit: str | None = None,
+) -> Rig:
+    """The rig of two cameras that look the same way, the right one `baseline` to the right."""
+    return assembled(left, right, rigid(np.eye(3), [-baseline, 0.0, 0.0]), given, where, name, unit)
 
 
 def rig_of_posed(posed: Sequence[PosedCamera], given: Given, name: str, unit: str | None = None) -> Rig:
@@ -83,6 +96,27 @@ def chosen(names: Sequence[str], given: Given, file: str) -> tuple[str, str]:
     return given.cameras or (names[0], names[1])
 
 
+def camera_of(
+    where: str,
+    model: str,
+    size: tuple[int, int],
+    params: Mapping[str, Any],
+    max_angle_deg: float | None = None,
+) -> Camera:
+    """The camera of a file's numbers; what is wrong with them is said of `where`."""
+    with errors_at(where):
+        return Camera(model, size, params, max_angle_deg)
+
+
+def rig_of_list(
+    source: Source, cameras: Section, read: Callable[[Section, Given], PosedCamera], given: Given
+) -> Rig:
+    """The rig of two cameras of a list, which are called cam0, cam1, ... by their places."""
+    names = chosen([f"cam{place}" for place in cameras.values], given, source.path)
+    sections = (cameras.section(name.removeprefix("cam"), "a camera") for name in names)
+    return rig_of_posed([read(section, given) for section in sections], given, source.name)
+
+
 def single(sources: Sequence[Source]) -> Source:
     """The one file of a format that takes no more than one."""
     if len(sources) > 1:
@@ -90,6 +124,19 @@ def single(sources: Sequence[Source]) -> Source:
     return sources[0]
 
 
-def placed(camera: PosedCamera, T_shared_camera: FloatArray) -> PosedCamera:
-    """The same camera, standing there."""
-    return replace(camera, T_shared_camera=T_shared_camera)
+def inverse(T: FloatArray) -> FloatArray:
+    """The inverse [4, 4] of a rigid transformation."""
+    R = T[:3, :3].T
+    return rigid(R, -R @ T[:3, 3])
+
+
+def rigid(R: Any, t: Any) -> FloatArray:
+    """The transformation [4, 4] with X' = R X + t."""
+    T = np.eye(4)
+    T[:3, :3], T[:3, 3] = R, t
+    return T
+
+
+def pose_matrix(rig: Rig) -> FloatArray:
+    """T_right_left [4, 4], metres."""
+    return rigid(rig.R_right_left, rig.t_right_left)

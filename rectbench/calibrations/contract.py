@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
-from rectbench.calibrations.documents.sources import Source
+from rectbench.calibrations.documents import Source
 from rectbench.cameras import Camera
 from rectbench.errors import UnknownName
 from rectbench.rigs.file_formats import FileFormat
@@ -58,7 +58,7 @@ class RigFormat(FileFormat):
 
     `recognises` must not raise; `read` gets every file that the user gave, the one recognised among them,
     and raises InvalidInput in one line that names file, key and expectation. Where `has_many`, a file may
-    hold more than two cameras, and `read` heeds `Given.cameras`. Where `shares_keys`, its files have no mark
+    hold more than two cameras, and `read` uses `Given.cameras`. Where `shares_keys`, its files have no mark
     of their own, so that it is asked when no other format knows a file.
     """
 

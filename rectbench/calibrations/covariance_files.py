@@ -1,4 +1,4 @@
-"""Files that say how sure a calibration is.
+"""Files that state the uncertainty of a calibration.
 
 | file | what is read |
 |---|---|
@@ -11,7 +11,7 @@ Names under `sigmas:` are `rotation_deg`, `direction_deg`, `baseline_m`, `focal_
 `RigCovariance.from_sigmas`), and single parameters (see `rectbench.rigs.covariance`); those of `parameters:`
 are single ones. Kalibr and OpenCV tell no correlations: their parameters count as independent, though
 OpenCV's fx and fy move as one where it held their ratio. That overstates what a good calibration leaves
-of row error, as a principal point and a rotation that fit the same images undo each other.
+of row error, as errors of principal point and rotation that fit the same images cancel each other.
 """
 
 from __future__ import annotations
@@ -23,9 +23,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from rectbench.calibrations.documents.faults import blaming, shown
-from rectbench.calibrations.documents.numbers import finite_number
-from rectbench.calibrations.documents.sources import Source
+from rectbench.calibrations.documents import Source, errors_at, finite_number, shown
 from rectbench.calibrations.formats.odometry.kalibr import LAYOUTS
 from rectbench.calibrations.formats.toolboxes.opencv import PINHOLE_ORDER
 from rectbench.cameras import Camera
@@ -87,7 +85,7 @@ def _read_own(source: Source, rig: Rig) -> RigCovariance:
         section = document.section("sigmas", "standard deviations by name")
         given = {name: section.number(name, "a standard deviation") for name in section.values}
         sizes = {name: given.pop(name) for name in SIZES if name in given}
-        with blaming(document.at("sigmas")):
+        with errors_at(document.at("sigmas")):
             return RigCovariance.from_sigmas(rig, **sizes, parameters=given, source=origin)
     if "parameters" not in document:
         raise document.fault("parameters", "sigmas:, or parameters: and covariance:")
@@ -99,7 +97,7 @@ def _read_own(source: Source, rig: Rig) -> RigCovariance:
     count = len(parameters)
     expected = f"a {count}x{count} matrix, a row for each of the parameters"
     matrix = document.matrix("covariance", expected, count, count)
-    with blaming(document.at("covariance")):
+    with errors_at(document.at("covariance")):
         covariance = RigCovariance(parameters, matrix, origin)
         covariance.refuse_unknown(rig)
     return covariance
@@ -127,7 +125,7 @@ def _read_opencv(source: Source, side: str, camera: Camera) -> RigCovariance:
         if numbers[len(names) :].any():
             raise document.fault(OPENCV_KEYS[1], "a sensor that is not tilted (its last two of 18 being 0)")
     sigmas = numbers[: len(names)]
-    with blaming(source.path):
+    with errors_at(source.path):
         matrix = _of_deviations(names[: len(sigmas)], sigmas)
         if sigmas[0] == 0:  # OpenCV held fx / fy, and counts fy alone
             both = np.array([camera.params["fx"] / camera.params["fy"], 1.0])
@@ -166,7 +164,7 @@ def _read_kalibr(source: Source, rig: Rig) -> RigCovariance:
         _refuse_other(
             source, f"{key} projection and distortion", values, own, f"those of the rig's {side} lens"
         )
-        with blaming(f"{source.path}: {key}"):
+        with errors_at(f"{source.path}: {key}"):
             parameters = tuple(f"{side}.{name}" for name in names)
             total += RigCovariance(parameters, _of_deviations(names, sigmas))
     key = "baseline T_1_0"
@@ -174,7 +172,7 @@ def _read_kalibr(source: Source, rig: Rig) -> RigCovariance:
     _, turn = _stated(source, text, f"{key} q", "q", 4, 3)
     t, shift = _stated(source, text, f"{key} t", "t", 3, 3)
     _refuse_other(source, f"{key} t", t, rig.t_right_left, "the rig's")
-    with blaming(f"{source.path}: {key}"):
+    with errors_at(f"{source.path}: {key}"):
         names = (*ROTATION, *TRANSLATION)
         total += RigCovariance(names, _of_deviations(names, np.concatenate([turn, shift])))
     return replace(total, source=f"{source.name}; {UNCORRELATED}")

@@ -9,10 +9,8 @@ from __future__ import annotations
 
 import cv2
 
-from rectbench.calibrations.documents.faults import blaming
-from rectbench.calibrations.documents.sections import Section
-from rectbench.calibrations.documents.sources import Source
-from rectbench.calibrations.transforms import rigid
+from rectbench.calibrations.assembling import rigid
+from rectbench.calibrations.documents import Section, Source, errors_at
 from rectbench.rigs.rig import Rig, checked_rotation
 from rectbench.types import FloatArray
 from rectbench.yaml_text import yaml_text
@@ -38,7 +36,7 @@ def read_rotation(file: Section, key: str) -> FloatArray:
     """The rotation [3, 3] under `key`, written as a matrix or as a rotation vector."""
     numbers = file.array(key, "a 3x3 rotation or a rotation vector", (9, 3))
     R = numbers.reshape(3, 3) if numbers.size == 9 else cv2.Rodrigues(numbers)[0]
-    with blaming(file.at(key)):
+    with errors_at(file.at(key)):
         return checked_rotation(R, "R_right_left")
 
 

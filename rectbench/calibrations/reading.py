@@ -12,9 +12,8 @@ from rectbench.calibrations import pose_file
 from rectbench.calibrations.assembling import assembled, rig_of_posed
 from rectbench.calibrations.built_in_rigs import built_in_rig, may_be_rig_name
 from rectbench.calibrations.contract import CameraFormat, Given, RigFormat
-from rectbench.calibrations.documents.faults import one_line, shown
-from rectbench.calibrations.documents.numbers import checked_size
-from rectbench.calibrations.documents.sources import Source, is_folder, sources_in
+from rectbench.calibrations.documents import Source, checked_size, one_line, shown
+from rectbench.calibrations.documents.sources import is_folder, sources_in
 from rectbench.calibrations.recognising import calibration_formats, camera_format, formats, is_known
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig

@@ -6,19 +6,19 @@ import os
 
 from rectbench.calibrations import pose_file
 from rectbench.calibrations.contract import CameraFormat, RigFormat
-from rectbench.calibrations.documents.sources import Source
+from rectbench.calibrations.documents import Source
 from rectbench.errors import InvalidInput
 from rectbench.registry import registry
 from rectbench.rigs.file_formats import FORMATS
 
 
 def formats() -> list[RigFormat | CameraFormat]:
-    """Every format, in the order in which files are tried on them; those of one turn by name."""
+    """Every format, in the order in which files are tried on them; those of one rank by name."""
     found = [plugin.value for plugin in registry(FORMATS).plugins()]
-    return sorted((one for one in found if isinstance(one, RigFormat | CameraFormat)), key=_turn)
+    return sorted((one for one in found if isinstance(one, RigFormat | CameraFormat)), key=_rank)
 
 
-def _turn(format: RigFormat | CameraFormat) -> int:
+def _rank(format: RigFormat | CameraFormat) -> int:
     """Whole rigs, then single cameras, then what has no mark of its own."""
     if isinstance(format, CameraFormat):
         return 1

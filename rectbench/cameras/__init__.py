@@ -1,6 +1,4 @@
 """Φ, pixel ↔ ray: one `Camera`, its lens and derivatives. Imports formulas and what is below."""
 
-from rectbench.cameras.camera import Camera
-from rectbench.cameras.projection import Projection
-
-__all__ = ["Camera", "Projection"]
+from rectbench.cameras.camera import Camera as Camera
+from rectbench.cameras.projection import Projection as Projection

@@ -31,20 +31,16 @@ RADIAL_624 = {"k0": "k1", "k1": "k2", "k2": "k3", "k3": "k4"}
 
 
 def equal_cameras(camera: Camera) -> list[Camera]:
-    """The camera, and every camera of another model that is exactly it; the nearest kin first."""
+    """The camera, and every camera of another model that is exactly it; the most closely related first."""
     found = {camera.model: camera}
     waiting = [camera]
     while waiting:
-        kin = waiting.pop(0)
-        for model, params in RULES.get(kin.model, _none)(kin.params):
+        equal = waiting.pop(0)
+        for model, params in RULES[equal.model](equal.params) if equal.model in RULES else ():
             if model not in found:
                 found[model] = Camera(model, camera.size, params, camera.max_angle_deg)
                 waiting.append(found[model])
     return list(found.values())
-
-
-def _none(p: Params) -> Iterator[Lens]:
-    yield from ()
 
 
 def _equidistant(p: Params) -> Iterator[Lens]:

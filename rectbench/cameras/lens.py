@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
+from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import Any, ClassVar
 
-from rectbench.cameras.intervals import POSITIVE, Interval
 from rectbench.errors import UnknownName
 from rectbench.formulas.domain import PIXEL_SLACK, RAY_SLACK
 from rectbench.formulas.protocol import Formulas
@@ -15,6 +16,29 @@ from rectbench.formulas.protocol import Formulas
 FOCAL_PARAMETERS = ("fx", "fy", "cx", "cy")
 AXIS_SINE = 1e-12
 """Nearer to the axis than this (sine of the angle), radius and angle keep the ratio they have here."""
+
+
+@dataclass(frozen=True)
+class Interval:
+    """The numbers that a parameter may take; an open end is left out."""
+
+    low: float = -math.inf
+    high: float = math.inf
+    low_open: bool = False
+    high_open: bool = False
+
+    def __contains__(self, number: float) -> bool:
+        above = self.low < number if self.low_open else self.low <= number
+        below = number < self.high if self.high_open else number <= self.high
+        return above and below
+
+    def __str__(self) -> str:
+        low = "(" if self.low_open or math.isinf(self.low) else "["
+        high = ")" if self.high_open or math.isinf(self.high) else "]"
+        return f"{low}{self.low:g}, {self.high:g}{high}"
+
+
+POSITIVE = Interval(low=0.0, low_open=True)
 
 
 class Lens(ABC):

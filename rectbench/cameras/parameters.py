@@ -7,8 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from rectbench.cameras.intervals import Interval
-from rectbench.cameras.lens import Lens
+from rectbench.cameras.lens import Interval, Lens
 from rectbench.errors import InvalidInput, UnknownName
 
 Parameter = float | tuple[float, ...]

@@ -1,4 +1,4 @@
-"""How a pixel depends on the lens's own parameters: what a calibration's uncertainty is propagated by.
+"""Derivatives of a pixel by the lens's own parameters, by which a calibration's uncertainty is propagated.
 
 A parameter goes by its name in the model; an entry of a sequence by name and place, such as `poly.0`.
 """

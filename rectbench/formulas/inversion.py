@@ -35,8 +35,7 @@ def repeat_until_settled(
     if xp is not NUMPY:
         import drjit as dr
 
-        looped: tuple[Any, ...] = dr.while_loop(state, unsettled, step)
-        return looped
+        return dr.while_loop(state, unsettled, step)
     while np.any(active := unsettled(*state)):
         following = step(*state)
         state = tuple(np.where(active, new, old) for new, old in zip(following, state, strict=True))

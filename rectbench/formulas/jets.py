@@ -57,13 +57,9 @@ class Jet:
     def __truediv__(self, other: Any) -> Jet:
         b = constant(other)
         quotient = self.value / b.value
-        return Jet(
-            quotient,
-            _sum(
-                tuple(d / b.value for d in self.partials),
-                tuple(-quotient / b.value * d for d in b.partials),
-            ),
-        )
+        over = tuple(d / b.value for d in self.partials)
+        under = tuple(-quotient / b.value * d for d in b.partials)
+        return Jet(quotient, _sum(over, under))
 
     def __rtruediv__(self, other: Any) -> Jet:
         return constant(other) / self
@@ -162,10 +158,8 @@ class JetNamespace(Formulas):
         a, b = constant(x), constant(y)
         zeros = tuple(0.0 for _ in a.partials or b.partials)
         pairs = zip(a.partials or zeros, b.partials or zeros, strict=True)
-        return Jet(
-            self.xp.where(condition, a.value, b.value),
-            tuple(self.xp.where(condition, p, q) for p, q in pairs),
-        )
+        partials = tuple(self.xp.where(condition, p, q) for p, q in pairs)
+        return Jet(self.xp.where(condition, a.value, b.value), partials)
 
     def minimum(self, x: Any, y: Any, /) -> Jet:
         a, b = constant(x), constant(y)
@@ -184,10 +178,8 @@ def variables(x: Any, y: Any, /) -> tuple[Jet, Jet]: ...
 def variables(x: Any, y: Any, z: Any, /) -> tuple[Jet, Jet, Jet]: ...
 def variables(*values: Any) -> tuple[Jet, ...]:
     """Jets of the given arrays, each the independent variable of its own partial derivative."""
-    return tuple(
-        Jet(value, tuple(1.0 if i == j else 0.0 for j in range(len(values))))
-        for i, value in enumerate(values)
-    )
+    places = range(len(values))
+    return tuple(Jet(value, tuple(float(i == j) for j in places)) for i, value in enumerate(values))
 
 
 def as_jets(tree: Any) -> Any:

@@ -10,7 +10,7 @@ carry derivatives through it. A choice between two values is `xp.where`, never `
 | roots and powers | `sqrt square hypot pow` |
 | exponentials | `exp log expm1 log1p`, `sinh cosh tanh`, `asinh acosh atanh` |
 | order | `abs sign floor minimum maximum`, `where isfinite` |
-| whole at 0 | `sinc cosc tanc atanc sinhc`: a quotient that has a limit there, with its derivative |
+| continuous at 0 | `sinc cosc tanc atanc sinhc`: a quotient that has a limit there, with its derivative |
 | curves | `polynomial piecewise spline` |
 
 Values and partial derivatives agree on all namespaces to some 1e-13, at the limits too. Where a function has

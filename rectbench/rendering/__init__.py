@@ -1,5 +1,3 @@
 """Worlds, the Mitsuba sensor for any camera, images and their truth. Imports warps and what is below."""
 
-from rectbench.rendering import blocks
-
-__all__ = ["blocks"]
+from rectbench.rendering import blocks as blocks

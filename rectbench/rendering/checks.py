@@ -1,4 +1,4 @@
-"""Refuses a world that the renderer would choke on: a scene file is anybody's code."""
+"""Refuses a world that the renderer would fail on: a scene file is anybody's code."""
 
 from __future__ import annotations
 

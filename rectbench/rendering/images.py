@@ -36,11 +36,8 @@ def radiance(
         bottom = min(top + rows, height)
         count = (bottom - top) * width * spp
         # As literals, these numbers would be baked into the kernel: every size would compile anew.
-        columns, first, ceiling = (
-            dr.opaque(mi.UInt32, width),
-            dr.opaque(mi.UInt32, top * width),
-            dr.opaque(mi.Float, brightest),
-        )
+        columns, first = dr.opaque(mi.UInt32, width), dr.opaque(mi.UInt32, top * width)
+        ceiling = dr.opaque(mi.Float, brightest)
         sampler.seed(dr.opaque(mi.UInt32, _band_seed(seed, top)), count)
         pixel = first + dr.arange(mi.UInt32, count) // dr.opaque(mi.UInt32, spp)
         row = pixel // columns

@@ -104,15 +104,10 @@ def _meshes(world: World) -> Iterator[Mesh]:
 def _mesh(mesh: Mesh, bsdf: Any) -> Any:
     mi = mitsuba()
     vertices, faces, uv = checked_mesh(mesh)
-    properties = mi.Properties()
-    properties["bsdf"] = bsdf
+    props = mi.Properties()
+    props["bsdf"] = bsdf
     loaded = mi.Mesh(
-        mesh.name,
-        len(vertices),
-        len(faces),
-        has_vertex_normals=False,
-        has_vertex_texcoords=True,
-        props=properties,
+        mesh.name, len(vertices), len(faces), has_vertex_normals=False, has_vertex_texcoords=True, props=props
     )
     buffers = mi.traverse(loaded)
     buffers["vertex_positions"] = vertices.ravel()
@@ -123,11 +118,7 @@ def _mesh(mesh: Mesh, bsdf: Any) -> Any:
 
 
 def _path_bsdf(material: Material) -> dict[str, Any]:
-    if material.glossy:
-        surface = {"type": "plastic", "diffuse_reflectance": _reflectance(material)}
-    else:
-        surface = {"type": "diffuse", "reflectance": _reflectance(material)}
-    return {"type": "twosided", "surface": surface}
+    return {"type": "twosided", "surface": _fast_bsdf(material)}
 
 
 def _fast_bsdf(material: Material) -> dict[str, Any]:

@@ -33,7 +33,7 @@ PATH_DEPTH = 5
 MOST_SAMPLES = 1 << 16
 
 BRIGHTEST = 8.0
-"""Ceiling of one sample, in units of display white: rare bright paths stay below visible sparkle."""
+"""Ceiling of one sample, in units of display white: rare bright paths leave no visible specks."""
 
 
 @overload

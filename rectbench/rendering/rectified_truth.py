@@ -1,4 +1,4 @@
-"""What is really there at the pixels of a rectified left image: depth, disparity, visibility.
+"""The ground truth at the pixels of a rectified left image: depth, disparity, visibility.
 
 The rays of the rectified pixels themselves are cast, so nothing is resampled: a disparity is that of
 the surface at the pixel's centre, at the edges of things as well.
@@ -73,8 +73,7 @@ class RectifiedTruth:
     def points_left(self) -> FloatArray:
         """[H, W, 3] the points in the left camera's frame, metres; NaN where none."""
         rays, _ = RectifiedView(self.rect).unproject(self.pixels)
-        points: FloatArray = rays * self.depth[..., None].astype(np.float64)
-        return points
+        return rays * self.depth[..., None].astype(np.float64)
 
     @cached_property
     def px_right(self) -> FloatArray:
@@ -86,8 +85,7 @@ class RectifiedTruth:
     @cached_property
     def disparity_px(self) -> FloatArray:
         """[H, W] û_left - û_right, hidden from the right camera or not; NaN where there is no point."""
-        disparity: FloatArray = self.pixels[..., 0] - self.px_right[..., 0]
-        return disparity
+        return self.pixels[..., 0] - self.px_right[..., 0]
 
     @cached_property
     def matched(self) -> BoolArray:

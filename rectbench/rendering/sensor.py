@@ -122,7 +122,7 @@ def _register(variant: str) -> None:
 
 @cache
 def _camera_object_class(variant: str) -> Any:
-    """The envelope in which a Camera travels through Mitsuba's Properties, which hold only Objects."""
+    """A Camera as an object of Mitsuba's, as its Properties hold no others."""
     mi = mitsuba()
     base: Any = mi.Object
 
@@ -188,34 +188,29 @@ def _sensor_class(variant: str) -> Any:
             self.m_needs_sample_2 = True
             self.m_needs_sample_3 = False
 
-        def _sample(self, position: Any, active: Any) -> tuple[Any, Any]:
-            x, y, z, seen = self.table.eval(dr.fma(position, self.scale, self.shift), active)
-            inside = seen >= 0.5
-            return self.rotation @ dr.normalize(mi.Vector3f(x, y, z)), inside
-
         def sample_ray(
             self, time: Any, sample1: Any, sample2: Any, sample3: Any, active: Any = True
         ) -> tuple[Any, Any]:
-            direction, inside = self._sample(sample2, active)
-            ray = dr.zeros(mi.Ray3f)
-            self._aim(ray, direction, inside, time)
-            return ray, mi.Color3f(dr.select(inside, 1.0, 0.0))
+            return self._aimed(mi.Ray3f, sample2, time, active)
 
         def sample_ray_differential(
             self, time: Any, sample1: Any, sample2: Any, sample3: Any, active: Any = True
         ) -> tuple[Any, Any]:
             # The base class would find differentials from two more samples; nothing here uses them.
-            direction, inside = self._sample(sample2, active)
-            ray = dr.zeros(mi.RayDifferential3f)
-            self._aim(ray, direction, inside, time)
+            ray, weight = self._aimed(mi.RayDifferential3f, sample2, time, active)
             ray.has_differentials = False
-            return ray, mi.Color3f(dr.select(inside, 1.0, 0.0))
+            return ray, weight
 
-        def _aim(self, ray: Any, direction: Any, inside: Any, time: Any) -> None:
+        def _aimed(self, kind: Any, position: Any, time: Any, active: Any) -> tuple[Any, Any]:
+            """The ray of a film position and its weight, 0 where the lens sees nothing."""
+            x, y, z, seen = self.table.eval(dr.fma(position, self.scale, self.shift), active)
+            inside = seen >= 0.5
+            ray = dr.zeros(kind)
             ray.o = mi.Point3f(self.origin)
-            ray.d = direction
+            ray.d = self.rotation @ dr.normalize(mi.Vector3f(x, y, z))
             ray.time = time
             ray.maxt = dr.select(inside, dr.largest(mi.Float), 0.0)
+            return ray, mi.Color3f(dr.select(inside, 1.0, 0.0))
 
         def bbox(self) -> Any:
             return mi.ScalarBoundingBox3f()

@@ -1,4 +1,4 @@
-"""What is really there: depth, points, visibility and correspondences of a rendered rig.
+"""The ground truth of a rendered rig: depth, points, visibility and correspondences.
 
 Only the depth comes from the renderer. A point is its pixel's float64 ray times that depth, so it
 projects back onto the pixel's centre, and its projection into the other camera obeys the epipolar
@@ -170,21 +170,13 @@ class Truth:
             (self.depth_right, self.points_right, self.px_left_of_right, self.visible_right),
         )
         for side, (depth, points, px, visible) in zip(SIDES, both, strict=True):
-            yield (
-                side,
-                {
-                    "depth": depth,
-                    "points": points.astype(np.float32),
-                    "px_other": px.astype(np.float32),
-                    "visible": visible,
-                },
-            )
+            single = {"points": points.astype(np.float32), "px_other": px.astype(np.float32)}
+            yield side, {"depth": depth, **single, "visible": visible}
 
 
 def _points(camera: Camera, pixels: FloatArray, depth: NDArray[np.float32]) -> FloatArray:
     rays, _ = camera.unproject(pixels)
-    points: FloatArray = rays * depth[..., None].astype(np.float64)
-    return points
+    return rays * depth[..., None].astype(np.float64)
 
 
 def _on_image(camera: Camera, points: FloatArray) -> FloatArray:
@@ -194,8 +186,7 @@ def _on_image(camera: Camera, points: FloatArray) -> FloatArray:
 
 
 def _left_from_right(rig: Rig, points_right: FloatArray) -> FloatArray:
-    points: FloatArray = (points_right - rig.t_right_left) @ rig.R_right_left
-    return points
+    return (points_right - rig.t_right_left) @ rig.R_right_left
 
 
 def _spread(
@@ -212,5 +203,4 @@ def _spread(
     turn = np.arange(len(order)) - np.repeat(starts, counts)
     # Within a turn the cells come in random order, so that a cut-off last turn is spread as well.
     draw = np.lexsort((rng.random(len(order)), turn))[:n]
-    chosen: NDArray[np.int64] = np.sort(order[draw])
-    return chosen
+    return np.sort(order[draw])

@@ -60,8 +60,7 @@ def _sensor_pose(scene: Any, path: Path) -> FloatArray:
         raise InvalidInput(f"{path}: the scene has no sensor; expected one, or world_from_left")
     matrix = np.array(scene.sensors()[0].world_transform().matrix, dtype=np.float64).reshape(4, 4)
     matrix[:3, :3] /= np.linalg.norm(matrix[:3, :3], axis=0)
-    pose: FloatArray = matrix @ sensor.CV_FROM_MITSUBA
-    return pose
+    return matrix @ sensor.CV_FROM_MITSUBA
 
 
 def _checked_pose(pose: FloatArray, path: Path) -> FloatArray:

@@ -1,18 +1,10 @@
-"""Two calibrated cameras, how they stand, how surely, and how they are saved. Imports cameras and below."""
+"""Two calibrated cameras, their pose and its uncertainty, and saving them. Imports cameras and below."""
 
-from rectbench.rigs.covariance import RigCovariance
-from rectbench.rigs.motions import MOTIONS, Motion
-from rectbench.rigs.poses import POSES, PoseNoise, perturb
-from rectbench.rigs.rig import Rig
-from rectbench.rigs.saving import written_formats
-
-__all__ = [
-    "MOTIONS",
-    "POSES",
-    "Motion",
-    "PoseNoise",
-    "Rig",
-    "RigCovariance",
-    "perturb",
-    "written_formats",
-]
+from rectbench.rigs.covariance import RigCovariance as RigCovariance
+from rectbench.rigs.motions import MOTIONS as MOTIONS
+from rectbench.rigs.motions import Motion as Motion
+from rectbench.rigs.poses import POSES as POSES
+from rectbench.rigs.poses import PoseNoise as PoseNoise
+from rectbench.rigs.poses import perturb as perturb
+from rectbench.rigs.rig import Rig as Rig
+from rectbench.rigs.saving import written_formats as written_formats

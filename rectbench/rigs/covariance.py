@@ -1,4 +1,4 @@
-"""How sure a calibration is: the joint covariance of a rig's pose and of its lenses' parameters.
+"""The uncertainty of a calibration: the joint covariance of a rig's pose and of its lenses' parameters.
 
 | parameter | what it is |
 |---|---|

@@ -1,4 +1,4 @@
-"""How the second camera stands: the poses a rig's cameras are tried in."""
+"""Motions: the poses of the right camera in which a rig is tried."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ Placing = Callable[[float, np.random.Generator], tuple[Rotation, FloatArray]]
 
 @dataclass(frozen=True)
 class Motion:
-    """A way for the right camera to stand to the left one; the two cameras stay what they are."""
+    """A pose of the right camera relative to the left one; the two cameras stay what they are."""
 
     name: str
     description: str

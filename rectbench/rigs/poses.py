@@ -1,4 +1,4 @@
-"""How wrong the pose is that a rectifier is told: a stated noise on the true one."""
+"""Pose noise: how far the pose that a rectifier is told is off the true one."""
 
 from __future__ import annotations
 
@@ -55,5 +55,4 @@ def perturb(rig: Rig, noise: PoseNoise, seed: int = 0) -> Rig:
 
 
 def _unit(vector: FloatArray) -> FloatArray:
-    unit: FloatArray = vector / np.linalg.norm(vector)
-    return unit
+    return vector / np.linalg.norm(vector)

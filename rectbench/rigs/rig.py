@@ -1,4 +1,4 @@
-"""Two calibrated cameras and how the right one stands to the left."""
+"""Two calibrated cameras and the pose of the right one relative to the left."""
 
 from __future__ import annotations
 
@@ -96,8 +96,7 @@ class Rig:
         >>> rb.load_rig("t265").centre_right_in_left.round(3)
         array([ 0.064,  0.   , -0.   ])
         """
-        centre: FloatArray = -self.R_right_left.T @ self.t_right_left
-        return centre
+        return -self.R_right_left.T @ self.t_right_left
 
     @property
     def essential_matrix(self) -> FloatArray:
@@ -112,8 +111,7 @@ class Rig:
         """
         x, y, z = self.t_right_left
         cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-        essential: FloatArray = cross @ self.R_right_left
-        return essential
+        return cross @ self.R_right_left
 
     def right_from_left(self, points_left: ArrayLike) -> FloatArray:
         """Points [..., 3] of the left camera's frame in the right camera's, metres.
@@ -122,10 +120,7 @@ class Rig:
         >>> rb.load_rig("t265").right_from_left([0.0, 0.0, 1.0]).round(3)
         array([-0.07 ,  0.004,  1.   ])
         """
-        points: FloatArray = (
-            as_points(points_left, 3, "points_left") @ self.R_right_left.T + self.t_right_left
-        )
-        return points
+        return as_points(points_left, 3, "points_left") @ self.R_right_left.T + self.t_right_left
 
     def scaled(self, factor: float) -> Rig:
         """The same rig with images `factor` times as large.

@@ -22,9 +22,7 @@ from pathlib import Path
 from typing import Any
 
 from rectbench.calibrations.contract import Given
-from rectbench.calibrations.documents.faults import blaming, one_line
-from rectbench.calibrations.documents.sections import Section, parse_document
-from rectbench.calibrations.documents.sources import Source
+from rectbench.calibrations.documents import Section, Source, errors_at, one_line, parse_document
 from rectbench.calibrations.formats.native import read_fields, rig_fields
 from rectbench.errors import InvalidInput, UnknownName
 from rectbench.warps.frame import signed_baseline_m
@@ -105,10 +103,10 @@ def load_rectification(path: str | os.PathLike[str]) -> Rectification:
         section = document.section(side, "R_rect_cam and target")
         R_rect_cam = section.matrix("R_rect_cam", "a 3x3 rotation", 3, 3)
         target = TARGET.read(section, "target")
-        with blaming(section.at("R_rect_cam")):
+        with errors_at(section.at("R_rect_cam")):
             warps.append(Warp(camera, R_rect_cam, target))
     notes = document.values.get("notes", {})
-    with blaming(document.at("notes")):
+    with errors_at(document.at("notes")):
         return Rectification(rig, warps[0], warps[1], size, _read_notes(notes))
 
 
@@ -152,10 +150,7 @@ Kinds = Mapping[str, tuple[type, Mapping[str, Field]]]
 TARGETS: Kinds = {
     "perspective": (Perspective, {"matrix": MATRIX}),
     "epipolar": (Epipolar, {"u": PROFILE, "v": PROFILE}),
-    "framed": (
-        Framed,
-        {"target": TARGET} | dict.fromkeys(("left", "top", "across", "down"), NUMBER),
-    ),
+    "framed": (Framed, {"target": TARGET} | dict.fromkeys(("left", "top", "across", "down"), NUMBER)),
 }
 PROFILES: Kinds = {
     "cubic": (Cubic, dict.fromkeys(("c0", "c1", "c2", "c3", "low", "high"), NUMBER)),
@@ -168,10 +163,7 @@ def _fields(item: Target | Profile, kinds: Kinds) -> dict[str, Any]:
     """What a target or profile is as plain data; of somebody else's class no more than its name."""
     for kind, (made, fields) in kinds.items():
         if type(item) is made:
-            return {
-                "kind": kind,
-                **{name: field.write(getattr(item, name)) for name, field in fields.items()},
-            }
+            return {"kind": kind} | {name: field.write(getattr(item, name)) for name, field in fields.items()}
     return {"kind": type(item).__name__}
 
 
@@ -181,5 +173,5 @@ def _read(section: Section, what: str, kinds: Kinds) -> Any:
         raise InvalidInput(f"{section.at('kind')}: {UnknownName(what, one_line(kind), kinds)}")
     made, fields = kinds[kind]
     values = [field.read(section, name) for name, field in fields.items()]
-    with blaming(section.at("").removesuffix(".")):
+    with errors_at(section.where):
         return made(*values)

@@ -62,10 +62,7 @@ class Profile(ABC):
 
     def __call__(self, angle: ArrayLike) -> FloatArray:
         """Pixel coordinates of angles in radians, of any shape."""
-        result: FloatArray = np.asarray(
-            self.value(namespaced(self.constants), np.asarray(angle, dtype=float), NUMPY)
-        )
-        return result
+        return np.asarray(self.value(namespaced(self.constants), np.asarray(angle, dtype=float), NUMPY))
 
 
 @dataclass(frozen=True)

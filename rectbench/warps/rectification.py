@@ -207,13 +207,11 @@ class Rectification:
             # r = b / (tan γ1 - tan γ2) with tan γ = x / h, times 1 / h1 for the length along the ray.
             distance = signed_baseline_m(self.rig) * h2 / (x1 * h2 - x2 * h1)
             distance = np.where(np.isfinite(distance) & (distance > 0), distance, np.nan)
-        points: FloatArray = rays_left * distance[..., None]
-        return points
+        return rays_left * distance[..., None]
 
     @staticmethod
     def _camera_rays(warp: Warp, px_rect: FloatArray) -> FloatArray:
-        rays: FloatArray = warp.target.unproject(px_rect)[0] @ warp.R_rect_cam
-        return rays
+        return warp.target.unproject(px_rect)[0] @ warp.R_rect_cam
 
 
 def _shown(profile: Profile, angles: Range) -> tuple[float, float]:

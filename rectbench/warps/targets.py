@@ -17,6 +17,9 @@ from rectbench.formulas.protocol import Formulas
 from rectbench.types import Constants, FloatArray
 from rectbench.warps.profiles import ANGLE_SLACK_RAD, Profile, Radial
 
+Axis = tuple[FloatArray, ...]
+"""Values that depend on the column of a pixel alone, or on its row alone."""
+
 
 class Target(Projection):
     """A rectified image as a projection, with what its lookup table can share along rows and columns.
@@ -36,9 +39,7 @@ class Target(Projection):
     (array([235.62,   0.  ]), True)
     """
 
-    def axis_tables(
-        self, columns: FloatArray, rows: FloatArray
-    ) -> tuple[tuple[FloatArray, ...], tuple[FloatArray, ...]]:
+    def axis_tables(self, columns: FloatArray, rows: FloatArray) -> tuple[Axis, Axis]:
         """Values that depend on the column (û) alone and on the row (v̂) alone, for `ray_formula`."""
         return (columns,), (rows,)
 
@@ -46,9 +47,7 @@ class Target(Projection):
         """The image through a window whose corner is (left, top), its pixels scaled; see `Framed`."""
         return Framed(self, left, top, across, down)
 
-    def ray_formula(
-        self, c: Any, column: tuple[Any, ...], row: tuple[Any, ...], xp: Formulas
-    ) -> tuple[Any, Any, Any, Any]:
+    def ray_formula(self, c: Any, column: Any, row: Any, xp: Formulas) -> tuple[Any, Any, Any, Any]:
         """The unit ray of a rectified pixel from the values of `axis_tables`, and its validity."""
         (u,), (v,) = column, row
         return self.unproject_formula(c, u, v, xp)
@@ -80,16 +79,11 @@ class Framed(Target):
         u, v = (u + 0.5) / c.across + c.left, (v + 0.5) / c.down + c.top
         return self.target.unproject_formula(c.target, u, v, xp)
 
-    def axis_tables(
-        self, columns: FloatArray, rows: FloatArray
-    ) -> tuple[tuple[FloatArray, ...], tuple[FloatArray, ...]]:
-        return self.target.axis_tables(
-            (columns + 0.5) / self.across + self.left, (rows + 0.5) / self.down + self.top
-        )
+    def axis_tables(self, columns: FloatArray, rows: FloatArray) -> tuple[Axis, Axis]:
+        columns, rows = (columns + 0.5) / self.across + self.left, (rows + 0.5) / self.down + self.top
+        return self.target.axis_tables(columns, rows)
 
-    def ray_formula(
-        self, c: Any, column: tuple[Any, ...], row: tuple[Any, ...], xp: Formulas
-    ) -> tuple[Any, Any, Any, Any]:
+    def ray_formula(self, c: Any, column: Any, row: Any, xp: Formulas) -> tuple[Any, Any, Any, Any]:
         return self.target.ray_formula(c.target, column, row, xp)
 
 
@@ -112,11 +106,8 @@ class Perspective(Target):
 
     def __post_init__(self) -> None:
         matrix = np.array(self.matrix, dtype=np.float64)
-        if (
-            matrix.shape != (3, 3)
-            or not np.isfinite(matrix).all()
-            or np.linalg.cond(matrix) > WORST_CONDITION
-        ):
+        finite = matrix.shape == (3, 3) and bool(np.isfinite(matrix).all())
+        if not finite or np.linalg.cond(matrix) > WORST_CONDITION:
             raise InvalidInput("Perspective needs a finite, invertible 3x3 matrix")
         matrix.flags.writeable = False
         object.__setattr__(self, "matrix", matrix)
@@ -178,9 +169,7 @@ class Epipolar(Target):
         in_range = _in_range(c.u, gamma) & _in_range(c.v, beta)
         return x, y, z, ok & in_range
 
-    def axis_tables(
-        self, columns: FloatArray, rows: FloatArray
-    ) -> tuple[tuple[FloatArray, ...], tuple[FloatArray, ...]]:
+    def axis_tables(self, columns: FloatArray, rows: FloatArray) -> tuple[Axis, Axis]:
         c = namespaced(self.constants)
         with np.errstate(invalid="ignore"):
             gamma = self.u.angle(c.u, columns, NUMPY)
@@ -189,9 +178,7 @@ class Epipolar(Target):
             beta = np.where(_in_range(c.v, beta), beta, math.nan)
         return (np.sin(gamma), np.cos(gamma)), (np.sin(beta), np.cos(beta))
 
-    def ray_formula(
-        self, c: Any, column: tuple[Any, ...], row: tuple[Any, ...], xp: Formulas
-    ) -> tuple[Any, Any, Any, Any]:
+    def ray_formula(self, c: Any, column: Any, row: Any, xp: Formulas) -> tuple[Any, Any, Any, Any]:
         (sin_gamma, cos_gamma), (sin_beta, cos_beta) = column, row
         return sin_gamma, cos_gamma * sin_beta, cos_gamma * cos_beta, cos_gamma >= 0.0
 

@@ -85,13 +85,8 @@ class Warp:
         du, dv, _ = projected_partials(self.source, c.source, x, y, z, xp)
         across, down = (rotated(c.R, *d) for d in ray_derivatives(du, dv))
         du_rect, dv_rect, ok = projected_partials(self.target, c.target, *rotated(c.R, x, y, z), xp)
-        return (
-            _dot(du_rect, across),
-            _dot(du_rect, down),
-            _dot(dv_rect, across),
-            _dot(dv_rect, down),
-            ok & seen,
-        )
+        by_u, by_v = ((_dot(gradient, across), _dot(gradient, down)) for gradient in (du_rect, dv_rect))
+        return *by_u, *by_v, ok & seen
 
     def _inverse_jacobian_formula(self, c: Any, u_rect: Any, v_rect: Any, xp: Formulas) -> tuple[Any, ...]:
         x, y, z, ok = self.target.unproject_formula(c.target, u_rect, v_rect, xp)
@@ -125,11 +120,8 @@ def rotated(R: Any, x: Any, y: Any, z: Any) -> Vector:
 def rotated_back(R: Any, x: Any, y: Any, z: Any) -> Vector:
     """Rᵀ @ (x, y, z), entry by entry, for formulas."""
     a, b, c = R
-    return (
-        a[0] * x + b[0] * y + c[0] * z,
-        a[1] * x + b[1] * y + c[1] * z,
-        a[2] * x + b[2] * y + c[2] * z,
-    )
+    first, second, third = (a[i] * x + b[i] * y + c[i] * z for i in range(3))
+    return first, second, third
 
 
 def _dot(a: Any, b: Any) -> Any:

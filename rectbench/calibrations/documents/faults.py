@@ -13,8 +13,8 @@ from rectbench.errors import InvalidInput
 
 
 @contextmanager
-def blaming(where: str) -> Iterator[None]:
-    """Errors of what is built from a file's numbers, with file and key put before them.
+def errors_at(where: str) -> Iterator[None]:
+    """Put `where`, file and key, before the message of an error that is raised within.
 
     Numbers so absurd that they overflow end in an error of their own, without a warning beside it.
     """

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from rectbench.calibrations.documents.faults import shown
+from rectbench.calibrations.documents.faults import errors_at, shown
 from rectbench.errors import InvalidInput
 
 MAX_NUMBERS = 256
@@ -25,6 +25,15 @@ def checked_size(size: Any) -> tuple[int, int]:
     if not all(1 <= side <= MAX_PIXELS and side == int(side) for side in (width, height)):
         raise InvalidInput(f"size is {shown(size)}; expected (width, height) in whole pixels")
     return int(width), int(height)
+
+
+def agreed_size(where: str, size: Any, given: tuple[int, int] | None) -> tuple[int, int]:
+    """`size` as (width, height), which is the one given beside the file if there is one."""
+    with errors_at(where):
+        stated = checked_size(size)
+    if given not in (None, stated):
+        raise InvalidInput(f"{where}: size is {stated}; expected {given} as given beside the file")
+    return stated
 
 
 def finite_number(value: Any) -> float | None:

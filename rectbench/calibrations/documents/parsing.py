@@ -1,4 +1,4 @@
-"""YAML, JSON, XML and TOML as plain strings, lists and mappings, from files that nobody vouches for.
+"""YAML, JSON, XML and TOML as plain strings, lists and mappings, from files that are not trusted.
 
 Nothing here constructs an object or expands an entity, and what may be nested and counted is bounded, with
 what an alias repeats counted again, so that a small file cannot become a long wait or a full memory.
@@ -37,7 +37,7 @@ OPENCV_TAGS = {
 TAGS = {*PLAIN_TAGS, *OPENCV_TAGS, "!"}
 NODES = {yaml.AliasEvent, yaml.ScalarEvent, yaml.SequenceStartEvent, yaml.MappingStartEvent}
 
-# Possessive, so that a long file of blank lines is walked once.
+# Possessive, so that a long file of blank lines is scanned once.
 TOML = re.compile(r"(?:\s++|#[^\n]*+)*+(?:\[[\w.\"-]++\][ \t]*+(?:#[^\n]*+)?+\r?+\n|[\w-]++ = )")
 """How a TOML file begins: a table's name alone in its line, or `key = `."""
 

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from rectbench.calibrations.documents.faults import blaming, one_line, shown
-from rectbench.calibrations.documents.numbers import checked_size, finite_number, flat_numbers
+from rectbench.calibrations.documents.faults import errors_at, one_line, shown
+from rectbench.calibrations.documents.numbers import agreed_size, checked_size, finite_number, flat_numbers
 from rectbench.calibrations.documents.parsing import Malformed, parse
 from rectbench.errors import InvalidInput, UnknownName
 from rectbench.rigs.rig import checked_rotation
@@ -40,8 +40,13 @@ class Section:
 
     def fault(self, key: str, expected: str) -> InvalidInput:
         """The error of a key that is missing, or that is not what was expected."""
-        found = f"is {shown(_essence(self.values[key]))}" if key in self.values else "is missing"
+        found = f"is {shown(_numbers_of(self.values[key]))}" if key in self.values else "is missing"
         return InvalidInput(f"{self.at(key)} {found}; expected {expected}")
+
+    @property
+    def where(self) -> str:
+        """File and key of the mapping itself, as errors name them."""
+        return self.at("").removesuffix(".").removesuffix(": ")
 
     def at(self, key: str) -> str:
         """File and full key, as errors name them."""
@@ -80,6 +85,15 @@ class Section:
             raise self.fault(key, expected)
         return value
 
+    def choice(self, key: str, known: Collection[str], default: str | None = None) -> str:
+        """The word under `key`, one of those known; `default`, if given, where the key is missing."""
+        if default is not None and key not in self:
+            return default
+        word = self.text(key, ", ".join(known))
+        if word not in known:
+            raise self.fault(key, ", ".join(known))
+        return word
+
     def number(self, key: str, expected: str) -> float:
         """The finite number under `key`."""
         number = finite_number(self.values.get(key))
@@ -97,6 +111,11 @@ class Section:
             raise self.fault(key, expected)
         return numbers
 
+    def named(self, key: str, names: Collection[str]) -> dict[str, float]:
+        """The finite numbers under `key` by these names, one each."""
+        expected = f"{len(names)} finite numbers ({' '.join(names)})"
+        return dict(zip(names, self.numbers(key, expected, len(names)), strict=True))
+
     def array(self, key: str, expected: str, sizes: Collection[int]) -> FloatArray:
         """The finite numbers under `key`, flat: a number, a list, a list of rows, or rows, cols and data."""
         numbers = flat_numbers(self.values.get(key))
@@ -111,6 +130,12 @@ class Section:
             return self._rows(key, value, expected, rows, columns)
         return self.array(key, expected, (rows * columns,)).reshape(rows, columns)
 
+    def rotation(self, key: str, expected: str = "a 3x3 rotation") -> FloatArray:
+        """The rotation [3, 3] under `key`, given as a `matrix`."""
+        R = self.matrix(key, expected, 3, 3)
+        with errors_at(self.at(key)):
+            return checked_rotation(R, "it")
+
     def rigid(self, key: str, expected: str) -> FloatArray:
         """The rigid transformation [4, 4] under `key`, given as [R t; 0 0 0 1] or [R t]."""
         value = self.values.get(key)
@@ -122,7 +147,7 @@ class Section:
         if not np.array_equal(transform[3], [0, 0, 0, 1]):
             row = shown(transform[3].tolist())
             raise InvalidInput(f"{self.at(key)} has the last row {row}; expected [0, 0, 0, 1]")
-        with blaming(self.at(key)):
+        with errors_at(self.at(key)):
             transform[:3, :3] = checked_rotation(transform[:3, :3], "its 3x3 part")
         return transform
 
@@ -136,37 +161,31 @@ class Section:
     def size(self, key: str, given: tuple[int, int] | None) -> tuple[int, int]:
         """The image's (width, height) under `key`; `given` stands in where the file has none."""
         expected = "[width, height] in whole pixels"
-        if key not in self.values and given is None:
-            raise InvalidInput(
-                f"{self.at(key)} is missing; expected {expected}, or `size=` given beside the file"
-            )
-        if key not in self.values:
-            return checked_size(given)
+        if key not in self:
+            return self._size_beside(key, expected, given)
         try:
             stated = checked_size(self.numbers(key, expected, 2))
         except InvalidInput:
             raise self.fault(key, expected) from None
-        if given is not None and checked_size(given) != stated:
+        if given is not None and given != stated:
             raise self.fault(key, f"the size {given[0]}x{given[1]} given beside the file")
         return stated
 
     def sides(self, width: str, height: str, given: tuple[int, int] | None) -> tuple[int, int]:
         """The image's (width, height) under two keys; `given` stands in where the file has neither."""
         if width not in self and height not in self:
-            if given is None:
-                raise InvalidInput(
-                    f"{self.at(width)} is missing; expected it and {height}, or `size=` given beside the file"
-                )
-            return checked_size(given)
-        with blaming(f"{self.at(width)} and {height}"):
-            stated = checked_size([self.number(key, "whole pixels") for key in (width, height)])
-        if given is not None and checked_size(given) != stated:
+            return self._size_beside(width, f"it and {height}", given)
+        sides = [self.number(key, "whole pixels") for key in (width, height)]
+        return agreed_size(f"{self.at(width)} and {height}", sides, given)
+
+    def _size_beside(self, key: str, expected: str, given: tuple[int, int] | None) -> tuple[int, int]:
+        if given is None:
             raise InvalidInput(
-                f"{self.at(width)}: size is {stated}; expected {given} as given beside the file"
+                f"{self.at(key)} is missing; expected {expected}, or `size=` given beside the file"
             )
-        return stated
+        return given
 
 
-def _essence(value: Any) -> Any:
-    """Of a matrix with rows, cols and data what people look at, its numbers."""
+def _numbers_of(value: Any) -> Any:
+    """The numbers of a matrix with rows, cols and data; any other value as it is."""
     return value["data"] if isinstance(value, dict) and "data" in value else value

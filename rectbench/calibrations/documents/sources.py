@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import os
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
@@ -87,6 +88,13 @@ class Source:
     def document(self) -> Section:
         """The YAML, JSON or XML that the file holds; raises InvalidInput where it holds none."""
         return parse_document(self.text, self.path)
+
+    def table(self, mark: str) -> Section:
+        """The lines `key mark words` by key: a word, or a list of several, without brackets and commas."""
+        lines = (line.partition(mark) for line in self.text.splitlines())
+        entries = {key.strip(): re.sub(r"[\[\];,]", " ", words).split() for key, _, words in lines}
+        values = {key: words[0] if len(words) == 1 else words for key, words in entries.items()}
+        return Section(self.path, "", values)
 
     @cached_property
     def keys(self) -> frozenset[str]:

@@ -28,11 +28,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from rectbench.calibrations.assembling import assembled, single
+from rectbench.calibrations.assembling import assembled, camera_of, rigid, single
 from rectbench.calibrations.contract import Given, RigFormat
-from rectbench.calibrations.documents.faults import blaming
-from rectbench.calibrations.documents.sections import Section, parse_document
-from rectbench.calibrations.transforms import rigid
+from rectbench.calibrations.documents import Section, parse_document
 from rectbench.cameras import Camera
 from rectbench.rigs.file_formats import Writing
 from rectbench.rigs.rig import Rig
@@ -44,13 +42,12 @@ LONGEST_MODEL = 40
 """Characters; a longer name is damage, which an error need not repeat."""
 
 
-def read_native(path: str | os.PathLike[str], text: str, size: tuple[int, int] | None = None) -> Rig:
+def read_native(path: str | os.PathLike[str], text: str) -> Rig:
     """The rig written in `text`, the content of the file `path`.
 
-    `size` stands in for an image size that the file leaves out. Raises InvalidInput in one line
-    that names file, key and what was expected there.
+    Raises InvalidInput in one line that names file, key and what was expected there.
     """
-    return read_fields(parse_document(text, str(path)), Given(size))
+    return read_fields(parse_document(text, str(path)), Given())
 
 
 def read_fields(document: Section, given: Given) -> Rig:
@@ -94,8 +91,7 @@ def _read_camera(section: Section, size: tuple[int, int] | None) -> Camera:
     }
     max_angle = section.number("max_angle_deg", "degrees") if "max_angle_deg" in section else None
     image = section.size("size", size)
-    with blaming(section.at("").removesuffix(".")):
-        return Camera(model, image, values, max_angle)
+    return camera_of(section.where, model, image, values, max_angle)
 
 
 def _camera_fields(camera: Camera) -> dict[str, Any]:

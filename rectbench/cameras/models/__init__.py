@@ -1,6 +1,6 @@
 """The projection models, one a file, each registered when imported. Imports files of cameras and formulas."""
 
-from rectbench.cameras.models import (
+from rectbench.cameras.models import (  # noqa: F401
     cahvor,
     division,
     double_sphere,
@@ -17,21 +17,3 @@ from rectbench.cameras.models import (
     thin_prism_fisheye,
     unified,
 )
-
-__all__ = [
-    "cahvor",
-    "division",
-    "double_sphere",
-    "equidistant",
-    "equisolid",
-    "extended_unified",
-    "field_of_view",
-    "fisheye624",
-    "kannala_brandt",
-    "ocam",
-    "orthographic",
-    "pinhole",
-    "stereographic",
-    "thin_prism_fisheye",
-    "unified",
-]

@@ -12,8 +12,7 @@ from types import SimpleNamespace
 from typing import Any, ClassVar
 
 from rectbench.cameras import brown
-from rectbench.cameras.intervals import Interval
-from rectbench.cameras.lens import FOCAL_PARAMETERS, Lens, register
+from rectbench.cameras.lens import FOCAL_PARAMETERS, Interval, Lens, register
 from rectbench.formulas.domain import FARTHEST, PIXEL_SLACK
 from rectbench.formulas.protocol import Formulas
 
@@ -29,12 +28,7 @@ class Cahvor(Lens):
 
     name = "cahvor"
     parameters = (*FOCAL_PARAMETERS, "alpha", "beta", "r0", "r1", "r2")
-    ranges: ClassVar = {
-        **Lens.ranges,
-        "alpha": TILT,
-        "beta": TILT,
-        "r0": Interval(low=-1.0, low_open=True),
-    }
+    ranges: ClassVar = {**Lens.ranges, "alpha": TILT, "beta": TILT, "r0": Interval(low=-1.0, low_open=True)}
 
     def derive(self, p: SimpleNamespace) -> dict[str, Any]:
         sin_a, cos_a, sin_b, cos_b = math.sin(p.alpha), math.cos(p.alpha), math.sin(p.beta), math.cos(p.beta)

@@ -5,8 +5,7 @@ from __future__ import annotations
 from types import SimpleNamespace
 from typing import Any, ClassVar
 
-from rectbench.cameras.intervals import Interval
-from rectbench.cameras.lens import FOCAL_PARAMETERS, Lens, register
+from rectbench.cameras.lens import FOCAL_PARAMETERS, Interval, Lens, register
 from rectbench.cameras.sphere import distance, edge, from_sphere_plane, to_sphere_plane
 from rectbench.formulas.protocol import Formulas
 

@@ -6,8 +6,7 @@ import math
 from types import SimpleNamespace
 from typing import Any, ClassVar
 
-from rectbench.cameras.intervals import Interval
-from rectbench.cameras.lens import FOCAL_PARAMETERS, Lens, RadialLens, register
+from rectbench.cameras.lens import FOCAL_PARAMETERS, Interval, Lens, RadialLens, register
 from rectbench.formulas.protocol import Formulas
 
 LEAST_OMEGA = 1e-12

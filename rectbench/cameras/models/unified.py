@@ -7,8 +7,7 @@ from types import SimpleNamespace
 from typing import Any, ClassVar
 
 from rectbench.cameras.brown import COEFFICIENTS, distorted, edge, undistorted
-from rectbench.cameras.intervals import Interval
-from rectbench.cameras.lens import FOCAL_PARAMETERS, Lens, register
+from rectbench.cameras.lens import FOCAL_PARAMETERS, Interval, Lens, register
 from rectbench.cameras.sphere import distance
 from rectbench.formulas.domain import LEAST_SLOPE, RAY_SLACK
 from rectbench.formulas.protocol import Formulas

@@ -43,7 +43,7 @@ in squares."""
 RIM = 0.3
 """How far beyond its outer squares the board is looked for to go on, in squares."""
 GOES_ON = 0.5
-"""Of the contrast, from which on what is there goes on alternating: the board is cut off."""
+"""Share of the contrast at which the squares still alternate beyond the board: it is cut off there."""
 UPRIGHT_DEG = 60.0
 """Where a board looks the same upside down, the images may be turned against each other by so much."""
 WINDOW, LEAST_WINDOW, MOST_WINDOW = 0.3, 2, 10
@@ -224,12 +224,8 @@ def _next_row(image: Grey, blurred: Grey, grid: FloatArray) -> FloatArray | None
     shortest = min(np.linalg.norm(back, axis=-1).min(), np.linalg.norm(along, axis=-1).min())
     if not np.linalg.norm(row - guess, axis=-1).max() <= NEAR_GUESS * shortest:
         return None
-    rising, falling = (
-        np.stack(
-            [levels_at(blurred, row + WITHIN_SQUARE * (end * along + tilt * end * back)) for end in (-1, 1)]
-        )
-        for tilt in (1, -1)
-    )
+    steps = [[WITHIN_SQUARE * (end * along + tilt * end * back) for end in (-1, 1)] for tilt in (1, -1)]
+    rising, falling = (np.stack([levels_at(blurred, row + step) for step in ends]) for ends in steps)
     even = np.arange(len(row)) % 2 == 0
     for light, dark in ((rising, falling), (falling, rising)):
         contrast = np.where(even, light.min(axis=0) - dark.max(axis=0), dark.min(axis=0) - light.max(axis=0))
@@ -257,10 +253,8 @@ def _alternation(image: Grey, grid: FloatArray) -> int:
     contrast_along = signs * (grey - (padded[1:-1, :-2] + padded[1:-1, 2:]) / 2)
     median = float(np.median(contrast))
     least = EVEN_CONTRAST * abs(median)
-    if (
-        abs(median) < LEAST_CONTRAST
-        or min((np.sign(median) * c).min() for c in (contrast, contrast_along)) < least
-    ):
+    lowest = min((np.sign(median) * c).min() for c in (contrast, contrast_along))
+    if abs(median) < LEAST_CONTRAST or lowest < least:
         return 0
     for side in range(4):
         turned, sign = np.rot90(ringed, side), np.rot90(signs, side)[0]
@@ -277,8 +271,7 @@ def _alternation(image: Grey, grid: FloatArray) -> int:
 def _with_ring(grid: FloatArray) -> FloatArray:
     """Corners [R, C, 2] with a row before the first and one after the last, on a parabola through three."""
     first, last = (3 * rows[0] - 3 * rows[1] + rows[2] for rows in (grid, grid[::-1]))
-    ringed: FloatArray = np.concatenate([first[None], grid, last[None]])
-    return ringed
+    return np.concatenate([first[None], grid, last[None]])
 
 
 def _refined(image: Grey, corners: FloatArray) -> FloatArray:

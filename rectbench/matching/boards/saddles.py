@@ -22,8 +22,7 @@ def refined_saddles(image: Grey, points: FloatArray, half: int) -> FloatArray:
     found = cv2.cornerSubPix(image, start.copy(), (half, half), (-1, -1), STEPS)
     # A search that leaves its window is put back to where it started.
     found = np.where((found == start).all(axis=-1, keepdims=True), np.nan, found)
-    refined: FloatArray = found.astype(np.float64).reshape(points.shape)
-    return refined
+    return found.astype(np.float64).reshape(points.shape)
 
 
 def levels_at(image: Grey, pixels: FloatArray) -> FloatArray:
@@ -33,5 +32,4 @@ def levels_at(image: Grey, pixels: FloatArray) -> FloatArray:
         within = (pixels > -0.5) & (pixels < [width - 0.5, height - 0.5])
     inside = np.asarray(within.all(axis=-1))
     column, row = np.moveaxis(np.rint(np.where(inside[..., None], pixels, 0)).astype(np.intp), -1, 0)
-    levels: FloatArray = np.where(inside, image[row, column].astype(float), np.nan)
-    return levels
+    return np.where(inside, image[row, column].astype(float), np.nan)

@@ -44,7 +44,7 @@ STEPS = 33
 STRAYING_PX = 0.6
 """RMS distance of a side's points from their parabola, beyond which it is no side."""
 FIT_STEPS = 6
-MOSTLY = 0.5
+LEAST_TRUST = 0.5
 """Mean trust in a side's points from which on they are a side."""
 BESIDE, LEAST_CONTRAST = 0.07, 20
 """How far out of a corner, in lengths along both sides, a black square that touches it is looked for; grey
@@ -161,7 +161,7 @@ def _bends(image: Grey, sides: _Sides) -> FloatArray:
         trust = 1 / (1 + (misses / STRAYING_PX) ** 2) ** 2
     strayed = np.sqrt((trust * misses**2).sum(axis=-1) / trust.sum(axis=-1)) > STRAYING_PX
     far = np.abs(bends @ powers.T).max(axis=-1) > reach
-    return np.where((strayed | far | (trust.mean(axis=-1) < MOSTLY))[..., None], np.nan, bends)
+    return np.where((strayed | far | (trust.mean(axis=-1) < LEAST_TRUST))[..., None], np.nan, bends)
 
 
 def _meeting(sides: _Sides, bends: FloatArray) -> FloatArray:

@@ -101,5 +101,4 @@ def _padded(
         for image in (left, right)
     ]
     found = engine.compute(*wide)[block : block + height, before : before + width]
-    disparity: NDArray[np.float32] = np.where(found < lowest * STEPS, np.nan, found / np.float32(STEPS))
-    return disparity
+    return np.where(found < lowest * STEPS, np.nan, found / np.float32(STEPS))

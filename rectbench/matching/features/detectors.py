@@ -15,7 +15,7 @@ from rectbench.errors import Unavailable, UnknownName
 from rectbench.images.reading import Grey
 from rectbench.types import FloatArray
 
-Words = NDArray[np.float32]
+Descriptors = NDArray[np.float32]
 """Descriptors [N, d] of length 1."""
 
 
@@ -24,7 +24,7 @@ class Features(NamedTuple):
 
     pixels: FloatArray
     """[N, 2]"""
-    words: Words
+    descriptors: Descriptors
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class Detector:
 
     make: Callable[[int | None], Any]
     """The OpenCV detector that keeps the strongest so many, or all."""
-    vectors: Callable[[NDArray[Any]], Words]
+    vectors: Callable[[NDArray[Any]], Descriptors]
     """From the descriptors to vectors [N, d] of any length."""
     binary: bool = False
     """Whether a descriptor is a string of bits."""
@@ -41,19 +41,19 @@ class Detector:
     def features(self, image: Grey, working_pixels: float | None, most: int | None) -> Features:
         """The strongest features of an image, in its own pixels, found on one of `working_pixels`."""
         small = _reduced(image, working_pixels)
-        keypoints, words = self.make(most).detectAndCompute(small, None)
+        keypoints, descriptors = self.make(most).detectAndCompute(small, None)
         if not keypoints:
             return Features(np.empty((0, 2)), np.empty((0, 1), np.float32))
         if most is not None and len(keypoints) > most:
             strongest = np.argsort([-point.response for point in keypoints], kind="stable")[:most]
-            keypoints, words = [keypoints[i] for i in strongest], words[strongest]
-        vectors = self.vectors(words)
+            keypoints, descriptors = [keypoints[i] for i in strongest], descriptors[strongest]
+        vectors = self.vectors(descriptors)
         vectors /= np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), 1e-12)
         enlarged = np.array(image.shape[::-1]) / small.shape[::-1]
         pixels = np.array([point.pt for point in keypoints], dtype=np.float64)
         return Features((pixels + 0.5) * enlarged - 0.5, vectors)
 
-    def distance(self, similarity: Words) -> Words:
+    def distance(self, similarity: Descriptors) -> Descriptors:
         """Distance of two descriptors with this product: the share of bits that differ, or Euclidean."""
         product = np.clip(similarity, -1, 1)
         distance = (1 - product) / 2 if self.binary else np.sqrt(2 - 2 * product)
@@ -103,18 +103,18 @@ def _surf(most: int | None) -> Any:
         ) from None
 
 
-def _rooted(words: NDArray[Any]) -> Words:
+def _rooted(descriptors: NDArray[Any]) -> Descriptors:
     """Root-SIFT: Hellinger distances tell descriptors apart better (Arandjelović and Zisserman 2012)."""
-    return np.sqrt(np.asarray(words, dtype=np.float32))
+    return np.sqrt(np.asarray(descriptors, dtype=np.float32))
 
 
-def _signs(words: NDArray[Any]) -> Words:
+def _signs(descriptors: NDArray[Any]) -> Descriptors:
     """A bit as -1 or 1: the product of two strings is then one less twice the share that differs."""
-    return np.unpackbits(words, axis=1).astype(np.float32) * 2 - 1
+    return np.unpackbits(descriptors, axis=1).astype(np.float32) * 2 - 1
 
 
-def _unchanged(words: NDArray[Any]) -> Words:
-    return np.asarray(words, dtype=np.float32)
+def _unchanged(descriptors: NDArray[Any]) -> Descriptors:
+    return np.asarray(descriptors, dtype=np.float32)
 
 
 _DETECTORS = {

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rectbench.images.reading import grey8
-from rectbench.matching.features.detectors import Words, detector_named
+from rectbench.matching.features.detectors import Descriptors, detector_named
 from rectbench.types import BoolArray, FloatArray, Matches
 
 RATIO = 0.8
@@ -76,7 +76,7 @@ def match_features(
         )
     if min(len(found.pixels), len(others.pixels)) < 2:
         return Matches(np.empty((0, 2)), np.empty((0, 2)))
-    nearest = _nearest(found.words, others.words)
+    nearest = _nearest(found.descriptors, others.descriptors)
     distance, second = (chosen_detector.distance(s) for s in (nearest.similarity, nearest.second))
     kept = nearest.mutual & (distance < ratio * second)
     if farthest is not None:
@@ -92,24 +92,20 @@ class Nearest(NamedTuple):
     """The nearest descriptor of each, all arrays [N]."""
 
     partner: NDArray[np.intp]
-    similarity: Words
-    second: Words
+    similarity: Descriptors
+    second: Descriptors
     """Similarity of the second nearest."""
     mutual: BoolArray
     """Whether the nearest's own nearest is this one."""
 
 
-def _nearest(words: Words, others: Words) -> Nearest:
-    """The nearest of others [M, d] to each of words [N, d]: the largest product, M at least 2."""
-    count = len(words)
-    partner, similarity, second = (
-        np.empty(count, np.intp),
-        np.empty(count, np.float32),
-        np.empty(count, np.float32),
-    )
+def _nearest(descriptors: Descriptors, others: Descriptors) -> Nearest:
+    """The nearest of others [M, d] to each of descriptors [N, d]: the largest product, M at least 2."""
+    count = len(descriptors)
+    partner, (similarity, second) = np.empty(count, np.intp), np.empty((2, count), np.float32)
     back, most_similar = np.zeros(len(others), np.intp), np.full(len(others), -np.inf, np.float32)
     for first in range(0, count, ROWS_AT_ONCE):
-        products = words[first : first + ROWS_AT_ONCE] @ others.T
+        products = descriptors[first : first + ROWS_AT_ONCE] @ others.T
         rows = np.arange(len(products))
         block = slice(first, first + len(products))
         best_row = products.argmax(axis=0)

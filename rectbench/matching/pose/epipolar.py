@@ -63,13 +63,10 @@ class RayMatches:
 
     def mismatched(self, shift: int) -> RayMatches:
         """Wrong matches: the left pixel of each with the right pixel of another."""
-        right = (
-            np.roll(array, shift, axis=0) for array in (self.pixels.right, self.right, self.per_pixel_right)
-        )
-        px_right, rays, per_pixel = right
-        return RayMatches(
-            Matches(self.pixels.left, px_right), self.left, rays, self.per_pixel_left, per_pixel
-        )
+        others = (self.pixels.right, self.right, self.per_pixel_right)
+        px_right, rays, per_pixel = (np.roll(array, shift, axis=0) for array in others)
+        pixels = Matches(self.pixels.left, px_right)
+        return RayMatches(pixels, self.left, rays, self.per_pixel_left, per_pixel)
 
     @classmethod
     def of(cls, left: Camera, right: Camera, matches: Matches) -> tuple[RayMatches, BoolArray]:
@@ -89,10 +86,8 @@ class RayMatches:
         """
         slopes_left = np.moveaxis(self.per_pixel_left, -1, 0)
         slopes_right = np.moveaxis(self.per_pixel_right, -1, 0)
-        pairs = [(self.right, self.left)]
-        pairs += [(self.right, slope) for slope in slopes_left] + [
-            (slope, self.left) for slope in slopes_right
-        ]
+        pairs = [(self.right, self.left), *((self.right, slope) for slope in slopes_left)]
+        pairs += [(slope, self.left) for slope in slopes_right]
         products = np.stack([b.T[:, None, :] * a.T[None, :, :] for b, a in pairs], axis=2)
         return products.reshape(9, 5, len(self))
 
@@ -166,8 +161,7 @@ def triangulated(pose: Pose, matches: RayMatches) -> Triangulation:
 def in_front(pose: Pose, matches: RayMatches, limit_px: float) -> BoolArray:
     """Cheirality: whether each match [N] may be a point ahead of both cameras, or too far to tell."""
     place = triangulated(pose, matches)
-    mask: BoolArray = place.ahead | (place.alike & (place.parallax <= limit_px * matches.rad_per_px))
-    return mask
+    return place.ahead | (place.alike & (place.parallax <= limit_px * matches.rad_per_px))
 
 
 def tangents(direction: FloatArray) -> FloatArray:
@@ -194,5 +188,4 @@ def turn(omega: FloatArray) -> FloatArray:
     skew = cross_matrix(omega)
     # sinc and its like: exact at no turn at all.
     half = np.sinc(angle / 2 / np.pi)
-    rotation: FloatArray = np.eye(3) + np.sinc(angle / np.pi) * skew + 0.5 * half * half * skew @ skew
-    return rotation
+    return np.eye(3) + np.sinc(angle / np.pi) * skew + 0.5 * half * half * skew @ skew

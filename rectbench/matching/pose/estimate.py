@@ -1,4 +1,4 @@
-"""How the right camera stands to the left one, from matches or images, for lenses of any width.
+"""The pose of the right camera relative to the left one, from matches or images, for lenses of any width.
 
 Zhou, Dai and Li, Algorithm 1, steps 1 and 2: features, five points, robust consensus, bundle adjustment;
 on rays throughout, so that a lens may see 180 degrees and more.
@@ -99,8 +99,7 @@ class PoseEstimate:
     @property
     def rotation_vector_deg(self) -> FloatArray:
         """The rotation from left to right coordinates: its axis, as long as its angle in degrees [3]."""
-        vector: FloatArray = Rotation.from_matrix(self.R_right_left).as_rotvec(degrees=True)
-        return vector
+        return Rotation.from_matrix(self.R_right_left).as_rotvec(degrees=True)
 
     @property
     def rotation_sigma_deg(self) -> float:

@@ -1,4 +1,4 @@
-"""What tells a pose from an accident: points ahead of both cameras, chance, a turn alone, no motion."""
+"""Tests that a pose is no accident: points ahead of both cameras, chance, a turn alone, no motion."""
 
 from __future__ import annotations
 
@@ -7,14 +7,7 @@ from scipy.spatial import cKDTree
 from scipy.special import bdtrc, gammaln
 
 from rectbench.errors import PoseNotFound
-from rectbench.matching.pose.epipolar import (
-    Pose,
-    RayMatches,
-    essential,
-    in_front,
-    sampson_px,
-    triangulated,
-)
+from rectbench.matching.pose.epipolar import Pose, RayMatches, essential, in_front, sampson_px, triangulated
 from rectbench.matching.pose.robust import SAMPLE
 from rectbench.types import BoolArray, FloatArray, Matches
 

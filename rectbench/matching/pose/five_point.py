@@ -71,8 +71,7 @@ def _constraints(basis: FloatArray) -> FloatArray:
     traces = np.einsum("bijac,blcd->badijl", gram, basis).reshape(count, 9, 64)
     cross = np.cross(basis[:, :, None, 0], basis[:, None, :, 1])
     determinant = np.einsum("bijc,blc->bijl", cross, basis[:, :, 2]).reshape(count, 1, 64)
-    coefficients: FloatArray = np.concatenate([traces, determinant], axis=1) @ SUMS.T
-    return coefficients
+    return np.concatenate([traces, determinant], axis=1) @ SUMS.T
 
 
 def _solutions(constraints: FloatArray) -> tuple[FloatArray, NDArray[np.intp]]:

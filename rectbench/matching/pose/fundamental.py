@@ -41,8 +41,7 @@ def fundamental_matrix(px_left: ArrayLike, px_right: ArrayLike) -> FloatArray:
     equations = (y[:, :, None] * x[:, None, :]).reshape(len(x), 9)
     *_, vt = np.linalg.svd(equations, full_matrices=len(x) < 9)
     F = T_right.T @ _refined(vt[-1].reshape(3, 3), x, y) @ T_left
-    fundamental: FloatArray = F / np.linalg.norm(F)
-    return fundamental
+    return F / np.linalg.norm(F)
 
 
 def sampson_residuals(F: FloatArray, left: FloatArray, right: FloatArray) -> FloatArray:
@@ -78,8 +77,7 @@ def _refined(F: FloatArray, left: FloatArray, right: FloatArray) -> FloatArray:
 
 
 def _turn(omega: FloatArray) -> FloatArray:
-    rotation: FloatArray = Rotation.from_rotvec(omega).as_matrix()
-    return rotation
+    return Rotation.from_rotvec(omega).as_matrix()
 
 
 def _normalisation(points: FloatArray) -> FloatArray:

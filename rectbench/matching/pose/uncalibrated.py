@@ -1,4 +1,4 @@
-"""A pair without a calibration: what its matches tell, seen through lenses that are taken as given.
+"""A pair without a calibration: the rig that its matches imply under assumed lenses.
 
 Two images without intrinsics determine the fundamental matrix, and with it rows that correspond; no lens,
 no scale and no metres. The rig stands in for what a rectifier asks: ideal pinholes of a usual view.

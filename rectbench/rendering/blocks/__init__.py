@@ -10,225 +10,113 @@ as one, add up, and become the meshes of a `World` through `meshes`.
 [(24, 3)]
 """
 
-from rectbench.rendering.blocks.furniture import (
-    TABLE_M,
-    blind,
-    bookcase,
-    books,
-    cabinet,
-    chair,
-    desk_lamp,
-    door,
-    extinguisher,
-    floor_lamp,
-    lockers,
-    monitor,
-    notice_board,
-    parcel,
-    pendant,
-    picture,
-    radiator,
-    sofa,
-    step_ladder,
-    stool,
-    table,
-    vase,
-)
-from rectbench.rendering.blocks.ground import asphalt, bark, birch_bark, forest_floor, gravel, lawn
-from rectbench.rendering.blocks.houses import HouseFinishes, Opening, house, pierced_wall, window
-from rectbench.rendering.blocks.interiors import (
-    OAK,
-    PINE,
-    WALNUT,
-    cloth,
-    enamel,
-    floorboards,
-    rug,
-    timber,
-    wall_paint,
-    wallpaper,
-)
-from rectbench.rendering.blocks.masonry import (
-    BROWN_BRICK,
-    RED_BRICK,
-    YELLOW_BRICK,
-    brick,
-    ceiling_board,
-    concrete,
-    glazed_tiles,
-    paving,
-    plaster,
-    roof_tiles,
-    stone_wall,
-    terrazzo,
-)
-from rectbench.rendering.blocks.noise import clouds, fractal
-from rectbench.rendering.blocks.plants import (
-    bare_tree,
-    birch,
-    broadleaf,
-    bush,
-    fern,
-    grass_tuft,
-    hedge,
-    log,
-    posy,
-    potted_plant,
-    spruce,
-)
-from rectbench.rendering.blocks.prints import Prints, book_spines, foliage, parcels, posters, window_panes
-from rectbench.rendering.blocks.shape import (
-    Finish,
-    Model,
-    Shape,
-    copies,
-    join,
-    meshes,
-    placement,
-    scattered,
-    stand,
-    together,
-)
-from rectbench.rendering.blocks.solids import (
-    ball,
-    boulder,
-    box,
-    boxes,
-    cable,
-    cards,
-    cylinder,
-    floor,
-    loft,
-    panel,
-    plank,
-    prism,
-    quads,
-    rod,
-    terrain,
-    tubes,
-    turned,
-)
-from rectbench.rendering.blocks.street_things import (
-    bench,
-    bicycle,
-    bollard,
-    car,
-    lamp_post,
-    litter_bin,
-    pillar_box,
-    rail_fence,
-    railing,
-)
-
-__all__ = [
-    "BROWN_BRICK",
-    "OAK",
-    "PINE",
-    "RED_BRICK",
-    "TABLE_M",
-    "WALNUT",
-    "YELLOW_BRICK",
-    "Finish",
-    "HouseFinishes",
-    "Model",
-    "Opening",
-    "Prints",
-    "Shape",
-    "asphalt",
-    "ball",
-    "bare_tree",
-    "bark",
-    "bench",
-    "bicycle",
-    "birch",
-    "birch_bark",
-    "blind",
-    "bollard",
-    "book_spines",
-    "bookcase",
-    "books",
-    "boulder",
-    "box",
-    "boxes",
-    "brick",
-    "broadleaf",
-    "bush",
-    "cabinet",
-    "cable",
-    "car",
-    "cards",
-    "ceiling_board",
-    "chair",
-    "cloth",
-    "clouds",
-    "concrete",
-    "copies",
-    "cylinder",
-    "desk_lamp",
-    "door",
-    "enamel",
-    "extinguisher",
-    "fern",
-    "floor",
-    "floor_lamp",
-    "floorboards",
-    "foliage",
-    "forest_floor",
-    "fractal",
-    "glazed_tiles",
-    "grass_tuft",
-    "gravel",
-    "hedge",
-    "house",
-    "join",
-    "lamp_post",
-    "lawn",
-    "litter_bin",
-    "lockers",
-    "loft",
-    "log",
-    "meshes",
-    "monitor",
-    "notice_board",
-    "panel",
-    "parcel",
-    "parcels",
-    "paving",
-    "pendant",
-    "picture",
-    "pierced_wall",
-    "pillar_box",
-    "placement",
-    "plank",
-    "plaster",
-    "posters",
-    "posy",
-    "potted_plant",
-    "prism",
-    "quads",
-    "radiator",
-    "rail_fence",
-    "railing",
-    "rod",
-    "roof_tiles",
-    "rug",
-    "scattered",
-    "sofa",
-    "spruce",
-    "stand",
-    "step_ladder",
-    "stone_wall",
-    "stool",
-    "table",
-    "terrain",
-    "terrazzo",
-    "timber",
-    "together",
-    "tubes",
-    "turned",
-    "vase",
-    "wall_paint",
-    "wallpaper",
-    "window",
-    "window_panes",
-]
+from rectbench.rendering.blocks.furniture import TABLE_M as TABLE_M
+from rectbench.rendering.blocks.furniture import blind as blind
+from rectbench.rendering.blocks.furniture import bookcase as bookcase
+from rectbench.rendering.blocks.furniture import books as books
+from rectbench.rendering.blocks.furniture import cabinet as cabinet
+from rectbench.rendering.blocks.furniture import chair as chair
+from rectbench.rendering.blocks.furniture import desk_lamp as desk_lamp
+from rectbench.rendering.blocks.furniture import door as door
+from rectbench.rendering.blocks.furniture import extinguisher as extinguisher
+from rectbench.rendering.blocks.furniture import floor_lamp as floor_lamp
+from rectbench.rendering.blocks.furniture import lockers as lockers
+from rectbench.rendering.blocks.furniture import monitor as monitor
+from rectbench.rendering.blocks.furniture import notice_board as notice_board
+from rectbench.rendering.blocks.furniture import parcel as parcel
+from rectbench.rendering.blocks.furniture import pendant as pendant
+from rectbench.rendering.blocks.furniture import picture as picture
+from rectbench.rendering.blocks.furniture import radiator as radiator
+from rectbench.rendering.blocks.furniture import sofa as sofa
+from rectbench.rendering.blocks.furniture import step_ladder as step_ladder
+from rectbench.rendering.blocks.furniture import stool as stool
+from rectbench.rendering.blocks.furniture import table as table
+from rectbench.rendering.blocks.furniture import vase as vase
+from rectbench.rendering.blocks.ground import asphalt as asphalt
+from rectbench.rendering.blocks.ground import bark as bark
+from rectbench.rendering.blocks.ground import birch_bark as birch_bark
+from rectbench.rendering.blocks.ground import forest_floor as forest_floor
+from rectbench.rendering.blocks.ground import gravel as gravel
+from rectbench.rendering.blocks.ground import lawn as lawn
+from rectbench.rendering.blocks.houses import HouseFinishes as HouseFinishes
+from rectbench.rendering.blocks.houses import Opening as Opening
+from rectbench.rendering.blocks.houses import house as house
+from rectbench.rendering.blocks.houses import pierced_wall as pierced_wall
+from rectbench.rendering.blocks.houses import window as window
+from rectbench.rendering.blocks.interiors import OAK as OAK
+from rectbench.rendering.blocks.interiors import PINE as PINE
+from rectbench.rendering.blocks.interiors import WALNUT as WALNUT
+from rectbench.rendering.blocks.interiors import cloth as cloth
+from rectbench.rendering.blocks.interiors import enamel as enamel
+from rectbench.rendering.blocks.interiors import floorboards as floorboards
+from rectbench.rendering.blocks.interiors import rug as rug
+from rectbench.rendering.blocks.interiors import timber as timber
+from rectbench.rendering.blocks.interiors import wall_paint as wall_paint
+from rectbench.rendering.blocks.interiors import wallpaper as wallpaper
+from rectbench.rendering.blocks.masonry import BROWN_BRICK as BROWN_BRICK
+from rectbench.rendering.blocks.masonry import RED_BRICK as RED_BRICK
+from rectbench.rendering.blocks.masonry import YELLOW_BRICK as YELLOW_BRICK
+from rectbench.rendering.blocks.masonry import brick as brick
+from rectbench.rendering.blocks.masonry import ceiling_board as ceiling_board
+from rectbench.rendering.blocks.masonry import concrete as concrete
+from rectbench.rendering.blocks.masonry import glazed_tiles as glazed_tiles
+from rectbench.rendering.blocks.masonry import paving as paving
+from rectbench.rendering.blocks.masonry import plaster as plaster
+from rectbench.rendering.blocks.masonry import roof_tiles as roof_tiles
+from rectbench.rendering.blocks.masonry import stone_wall as stone_wall
+from rectbench.rendering.blocks.masonry import terrazzo as terrazzo
+from rectbench.rendering.blocks.noise import clouds as clouds
+from rectbench.rendering.blocks.noise import fractal as fractal
+from rectbench.rendering.blocks.plants import bare_tree as bare_tree
+from rectbench.rendering.blocks.plants import birch as birch
+from rectbench.rendering.blocks.plants import broadleaf as broadleaf
+from rectbench.rendering.blocks.plants import bush as bush
+from rectbench.rendering.blocks.plants import fern as fern
+from rectbench.rendering.blocks.plants import grass_tuft as grass_tuft
+from rectbench.rendering.blocks.plants import hedge as hedge
+from rectbench.rendering.blocks.plants import log as log
+from rectbench.rendering.blocks.plants import posy as posy
+from rectbench.rendering.blocks.plants import potted_plant as potted_plant
+from rectbench.rendering.blocks.plants import spruce as spruce
+from rectbench.rendering.blocks.prints import Prints as Prints
+from rectbench.rendering.blocks.prints import book_spines as book_spines
+from rectbench.rendering.blocks.prints import foliage as foliage
+from rectbench.rendering.blocks.prints import parcels as parcels
+from rectbench.rendering.blocks.prints import posters as posters
+from rectbench.rendering.blocks.prints import window_panes as window_panes
+from rectbench.rendering.blocks.shape import Finish as Finish
+from rectbench.rendering.blocks.shape import Model as Model
+from rectbench.rendering.blocks.shape import Shape as Shape
+from rectbench.rendering.blocks.shape import copies as copies
+from rectbench.rendering.blocks.shape import join as join
+from rectbench.rendering.blocks.shape import meshes as meshes
+from rectbench.rendering.blocks.shape import placement as placement
+from rectbench.rendering.blocks.shape import scattered as scattered
+from rectbench.rendering.blocks.shape import stand as stand
+from rectbench.rendering.blocks.shape import together as together
+from rectbench.rendering.blocks.solids import ball as ball
+from rectbench.rendering.blocks.solids import boulder as boulder
+from rectbench.rendering.blocks.solids import box as box
+from rectbench.rendering.blocks.solids import boxes as boxes
+from rectbench.rendering.blocks.solids import cable as cable
+from rectbench.rendering.blocks.solids import cards as cards
+from rectbench.rendering.blocks.solids import cylinder as cylinder
+from rectbench.rendering.blocks.solids import floor as floor
+from rectbench.rendering.blocks.solids import loft as loft
+from rectbench.rendering.blocks.solids import panel as panel
+from rectbench.rendering.blocks.solids import plank as plank
+from rectbench.rendering.blocks.solids import prism as prism
+from rectbench.rendering.blocks.solids import quads as quads
+from rectbench.rendering.blocks.solids import rod as rod
+from rectbench.rendering.blocks.solids import terrain as terrain
+from rectbench.rendering.blocks.solids import tubes as tubes
+from rectbench.rendering.blocks.solids import turned as turned
+from rectbench.rendering.blocks.street_things import bench as bench
+from rectbench.rendering.blocks.street_things import bicycle as bicycle
+from rectbench.rendering.blocks.street_things import bollard as bollard
+from rectbench.rendering.blocks.street_things import car as car
+from rectbench.rendering.blocks.street_things import lamp_post as lamp_post
+from rectbench.rendering.blocks.street_things import litter_bin as litter_bin
+from rectbench.rendering.blocks.street_things import pillar_box as pillar_box
+from rectbench.rendering.blocks.street_things import rail_fence as rail_fence
+from rectbench.rendering.blocks.street_things import railing as railing

@@ -38,14 +38,11 @@ def chair(wood: Finish, seat: Finish) -> Model:
     ]
     rungs = [rod((s * x, front, 0.2), (s * x, back, 0.2), 0.009, 6) for s in (-1, 1)]
     slats = [plank(2 * x, 0.014, 0.05).at(0, back + 0.02 + 0.2 * (z - SEAT_M), z) for z in (0.58, 0.70)]
-    slats += [
-        plank(2 * x + 0.05, 0.02, 0.09).at(0, back + 0.1, 0.85),
-        plank(2 * x, 0.02, 0.05).at(0, front, 0.37),
-    ]
+    slats += [plank(2 * x + 0.05, 0.02, 0.09).at(0, back + 0.1, 0.85)]
+    slats += [plank(2 * x, 0.02, 0.05).at(0, front, 0.37)]
     slats += [plank(0.02, 2 * x, 0.05).at(s * x, 0, 0.37) for s in (-1, 1)]
-    return join([*legs, *posts, *rungs, *slats]).of(wood) + ball(0.44, 0.43, 0.06, 0.35).at(
-        z=SEAT_M - 0.04
-    ).of(seat)
+    cushion = ball(0.44, 0.43, 0.06, 0.35).at(z=SEAT_M - 0.04)
+    return join([*legs, *posts, *rungs, *slats]).of(wood) + cushion.of(seat)
 
 
 def stool(wood: Finish) -> Model:
@@ -198,20 +195,15 @@ def desk_lamp(metal: Finish, cloth: Finish) -> Model:
     """A jointed work lamp, 45 cm high."""
     arms = tubes([(0, 0, 0.02), (-0.09, 0, 0.24), (0.12, 0, 0.44)], 0.008, 6)
     foot = cylinder(0.085, 0.02)
-    hood = turned([(0.025, 0.0), (0.03, -0.05), (0.085, -0.13), (0.08, -0.13), (0.02, -0.05)], 16).at(
-        0.14, 0, 0.47
-    )
-    return (arms + foot).of(metal) + hood.of(cloth)
+    hood = turned([(0.025, 0.0), (0.03, -0.05), (0.085, -0.13), (0.08, -0.13), (0.02, -0.05)], 16)
+    return (arms + foot).of(metal) + hood.at(0.14, 0, 0.47).of(cloth)
 
 
 def pendant(shade: Finish, flex: Finish, *, drop: float) -> Model:
     """A lampshade that hangs `drop` metres below z = 0 on its flex."""
-    hood = turned(
-        [(0.05, 0.0), (0.07, -0.02), (0.24, -0.2), (0.235, -0.2), (0.06, -0.03), (0.05, 0.0)], 24
-    ).at(z=-drop)
-    return hood.of(shade) + (rod((0, 0, 0), (0, 0, -drop), 0.005, 6) + cylinder(0.05, 0.02).at(z=-0.02)).of(
-        flex
-    )
+    profile = [(0.05, 0.0), (0.07, -0.02), (0.24, -0.2), (0.235, -0.2), (0.06, -0.03), (0.05, 0.0)]
+    hung = rod((0, 0, 0), (0, 0, -drop), 0.005, 6) + cylinder(0.05, 0.02).at(z=-0.02)
+    return turned(profile, 24).at(z=-drop).of(shade) + hung.of(flex)
 
 
 def picture(prints: Prints, frame: Finish, index: int, *, width: float = 0.6, height: float = 0.8) -> Model:
@@ -300,13 +292,10 @@ def lockers(enamel: Finish, metal: Finish, *, count: int = 4) -> Model:
 
 def extinguisher(red: Finish, black: Finish) -> Model:
     """A fire extinguisher on a wall bracket, 60 cm high, its foot at z = 0."""
-    body = turned([(0.0, 0.0), (0.075, 0.01), (0.075, 0.42), (0.03, 0.49), (0.02, 0.52), (0.0, 0.52)], 16).at(
-        0, -0.1
-    )
+    body = turned([(0.0, 0.0), (0.075, 0.01), (0.075, 0.42), (0.03, 0.49), (0.02, 0.52), (0.0, 0.52)], 16)
     hose = tubes([(0.02, -0.1, 0.52), (0.12, -0.12, 0.48), (0.12, -0.12, 0.2), (0.09, -0.12, 0.08)], 0.012, 6)
-    return body.of(red) + (
-        hose + box(0.03, 0.12, 0.03).at(0, -0.12, 0.52) + box(0.12, 0.03, 0.1).at(0, -0.015, 0.2)
-    ).of(black)
+    fittings = box(0.03, 0.12, 0.03).at(0, -0.12, 0.52), box(0.12, 0.03, 0.1).at(0, -0.015, 0.2)
+    return body.at(0, -0.1).of(red) + join([hose, *fittings]).of(black)
 
 
 def monitor(black: Finish, prints: Prints, index: int) -> Model:
@@ -322,17 +311,10 @@ def monitor(black: Finish, prints: Prints, index: int) -> Model:
 
 def vase(clay: Finish, *, height: float = 0.3) -> Model:
     """A thrown vase."""
-    profile = [
-        (0.0, 0.0),
-        (0.25, 0.0),
-        (0.42, 0.35),
-        (0.33, 0.7),
-        (0.16, 0.86),
-        (0.2, 1.0),
-        (0.17, 1.0),
-        (0.13, 0.86),
-    ]
-    return turned([(r * 0.6 * height, z * height) for r, z in profile]).of(clay)
+    radii = (0.0, 0.25, 0.42, 0.33, 0.16, 0.2, 0.17, 0.13)
+    levels = (0.0, 0.0, 0.35, 0.7, 0.86, 1.0, 1.0, 0.86)
+    profile = [(r * 0.6 * height, z * height) for r, z in zip(radii, levels, strict=True)]
+    return turned(profile).of(clay)
 
 
 def step_ladder(wood: Finish, metal: Finish, *, height: float = 1.7) -> Model:

@@ -100,7 +100,7 @@ def window(o: Opening, finishes: HouseFinishes, picture: int, bars: tuple[int, i
 
 def front_door(o: Opening, finishes: HouseFinishes, picture: int) -> Model:
     """Panelled leaf with knob and letter box, fanlight above, frame, steps down to the street."""
-    y, top = REVEAL_M - 0.02, o.bottom + DOOR_M[1]
+    y, top, half = REVEAL_M - 0.02, o.bottom + DOOR_M[1], o.bottom / 2
     leaf_low, leaf_high = [(o.left, y, o.bottom)], [(o.right, y + 0.04, top)]
     for x in (o.left + 0.14, (o.left + o.right) / 2 + 0.05):
         for z, height in ((0.2, 0.65), (1.05, 0.85)):
@@ -116,11 +116,7 @@ def front_door(o: Opening, finishes: HouseFinishes, picture: int) -> Model:
     glass = cards([[(o.left, y, top), (o.right, y, top), (o.right, y, o.top), (o.left, y, o.top)]])
     steps = boxes(
         [(o.left - 0.35, -0.55, -0.05), (o.left - 0.2, -0.28, -0.05), (o.left - 0.16, -0.06, o.top)],
-        [
-            (o.right + 0.35, 0, o.bottom / 2),
-            (o.right + 0.2, REVEAL_M, o.bottom),
-            (o.right + 0.16, 0.1, o.top + 0.24),
-        ],
+        [(o.right + 0.35, 0, half), (o.right + 0.2, REVEAL_M, o.bottom), (o.right + 0.16, 0.1, o.top + 0.24)],
     )
     metal_and_wood = (frame + brass).of(finishes.trim)
     return leaf + metal_and_wood + finishes.panes.on(glass, picture) + steps.of(finishes.stone)
@@ -133,12 +129,7 @@ def gabled_roof(width: float, depth: float, eaves: float, rise: float, finishes:
     low, ridge = eaves - over * slope, eaves + rise
     foot, crown, left, right = low + 0.05, ridge + 0.05, a - 0.15, b + 0.15
     top = [(right, depth / 2, crown), (left, depth / 2, crown)]
-    slopes = quads(
-        [
-            [(left, -over, foot), (right, -over, foot), *top],
-            [(left, depth + over, foot), (right, depth + over, foot), *top],
-        ]
-    )
+    slopes = quads([[(left, y, foot), (right, y, foot), *top] for y in (-over, depth + over)])
     gables = quads([
         [(a, depth, eaves), (a, 0, eaves), (a, depth / 2, ridge), (a, depth / 2, ridge)],
         [(b, 0, eaves), (b, depth, eaves), (b, depth / 2, ridge), (b, depth / 2, ridge)],
@@ -147,11 +138,8 @@ def gabled_roof(width: float, depth: float, eaves: float, rise: float, finishes:
     gutter = rod((a - 0.15, -over - 0.06, low), (b + 0.15, -over - 0.06, low), 0.07)
     pipe = rod((b - 0.25, -0.06, 0.0), (b - 0.25, -0.06, low), 0.045)
     crest = rod((a - 0.15, depth / 2, ridge + 0.06), (b + 0.15, depth / 2, ridge + 0.06), 0.11)
-    return (
-        (slopes + crest).of(finishes.roof)
-        + gables.of(finishes.wall)
-        + (soffit + gutter + pipe).of(finishes.trim)
-    )
+    trim = (soffit + gutter + pipe).of(finishes.trim)
+    return (slopes + crest).of(finishes.roof) + gables.of(finishes.wall) + trim
 
 
 def chimney(finishes: HouseFinishes, pots: int = 2) -> Model:

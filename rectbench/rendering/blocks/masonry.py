@@ -10,16 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rectbench.rendering.blocks.noise import (
-    Field,
-    blend,
-    clouds,
-    fractal,
-    planes,
-    reflectance,
-    smoothstep,
-    spots,
-)
+from rectbench.rendering.blocks.noise import Field, Noise, blend, planes, reflectance, smoothstep
 from rectbench.rendering.blocks.shape import Finish
 from rectbench.rendering.world import Colour, Material
 
@@ -45,8 +36,7 @@ class Courses:
 
     def each(self, values: Field) -> Field:
         """Values [count] or [3, count] of the blocks, spread over their texels."""
-        spread: Field = values[..., self.block]
-        return spread
+        return values[..., self.block]
 
     def tone(self, rng: np.random.Generator) -> Field:
         """A normal random number of each block, over its texels."""
@@ -70,11 +60,10 @@ def brick(
     seed: int, colour: Colour = RED_BRICK, mortar: Colour = MORTAR, *, rows: int = 96, columns: int = 64
 ) -> Finish:
     """Brickwork: bricks of 24 x 7 cm with joints, each burnt its own shade, weathered as a whole."""
-    rng = np.random.default_rng((seed, 1))
     wall = courses(rows, columns, (8, 26))
-    height, width = wall.block.shape
-    grain, weather = fractal(rng, height, width, 0.9), clouds(rng, height, width)
-    burnt, pale, tone = rng.standard_normal((3, 1, wall.count), dtype=np.float32)
+    noise = Noise.of(seed, 1, *wall.block.shape)
+    grain, weather = noise.fractal(0.9), noise.clouds()
+    burnt, pale, tone = noise.rng.standard_normal((3, 1, wall.count), dtype=np.float32)
     fired = np.array(colour, dtype=np.float32)[:, None] * (1.0 + 0.19 * tone)
     fired = fired * np.where(burnt > 1.3, [[0.48], [0.55], [0.75]], 1.0)
     fired = fired * np.where(pale > 1.4, [[1.30], [1.60], [1.50]], 1.0)
@@ -87,15 +76,10 @@ def brick(
 
 def plaster(seed: int, colour: Colour) -> Finish:
     """Painted render: a rough coat, stains of rain, flaws and hairline cracks."""
-    rng = np.random.default_rng((seed, 2))
-    size = 768
-    fine, middle, coarse = (
-        fractal(rng, size, size, 0.5),
-        fractal(rng, size, size, 1.6),
-        clouds(rng, size, size),
-    )
-    crack = 1.0 - smoothstep(0.0, 0.02, np.abs(fractal(rng, size, size, 3.3) - 0.4))
-    flaw = smoothstep(1.3, 2.2, fractal(rng, size, size, 1.8))
+    noise = Noise.of(seed, 2, 768)
+    fine, middle, coarse = noise.fractal(0.5), noise.fractal(1.6), noise.clouds()
+    crack = 1.0 - smoothstep(0.0, 0.02, np.abs(noise.fractal(3.3) - 0.4))
+    flaw = smoothstep(1.3, 2.2, noise.fractal(1.8))
     tone = 1.0 + 0.06 * fine + 0.07 * middle + 0.07 * coarse - 0.35 * crack - 0.28 * flaw
     texels = (planes(colour) + planes((0.015, 0.0, -0.015)) * coarse) * tone
     return Finish("plaster", Material(reflectance(texels)), (5.0, 5.0))
@@ -103,10 +87,9 @@ def plaster(seed: int, colour: Colour) -> Finish:
 
 def concrete(seed: int, colour: Colour = (0.36, 0.345, 0.32)) -> Finish:
     """Cast stone: speckled, with pores and stains."""
-    rng = np.random.default_rng((seed, 3))
-    size = 512
-    fine, coarse = fractal(rng, size, size, 0.6), fractal(rng, size, size, 2.0)
-    distance, kind = spots(rng, size, size, 1500, 4.0)
+    noise = Noise.of(seed, 3, 512)
+    fine, coarse = noise.fractal(0.6), noise.fractal(2.0)
+    distance, kind = noise.spots(1500, 4.0)
     pore = (1.0 - smoothstep(0.4, 1.0, distance)) * (0.2 + 0.4 * kind)
     texels = planes(colour) * (1.0 + 0.11 * fine + 0.14 * coarse - pore)
     return Finish("concrete", Material(reflectance(texels)), (1.5, 1.5))
@@ -114,17 +97,11 @@ def concrete(seed: int, colour: Colour = (0.36, 0.345, 0.32)) -> Finish:
 
 def roof_tiles(seed: int, colour: Colour = (0.27, 0.10, 0.06)) -> Finish:
     """Overlapping clay tiles of 25 x 20 cm with lichen; v runs up the slope."""
-    rng = np.random.default_rng((seed, 4))
     tiles = courses(32, 32, (16, 16))
-    height, width = tiles.block.shape
+    noise = Noise.of(seed, 4, *tiles.block.shape)
     rise = np.tile(np.linspace(1.12, 0.5, 16, dtype=np.float32), 32)[:, None]
-    lichen = smoothstep(0.9, 1.9, fractal(rng, height, width, 1.7))
-    tone = rise * (
-        1.0
-        + 0.20 * tiles.tone(rng)
-        + 0.09 * fractal(rng, height, width, 0.7)
-        + 0.10 * clouds(rng, height, width)
-    )
+    lichen = smoothstep(0.9, 1.9, noise.fractal(1.7))
+    tone = rise * (1.0 + 0.20 * tiles.tone(noise.rng) + 0.09 * noise.fractal(0.7) + 0.10 * noise.clouds())
     tone = tone * (0.55 + 0.45 * smoothstep(0.0, 1.6, tiles.edge_px))
     texels = blend(planes(colour) * tone, (0.30, 0.30, 0.20), 0.55 * lichen)
     return Finish("roof-tiles", Material(reflectance(texels)), (8.0, 6.4))
@@ -132,13 +109,12 @@ def roof_tiles(seed: int, colour: Colour = (0.27, 0.10, 0.06)) -> Finish:
 
 def paving(seed: int, colour: Colour = (0.37, 0.34, 0.295)) -> Finish:
     """Pavement of 40 cm slabs in shifted rows, each cast differently, with sandy joints."""
-    rng = np.random.default_rng((seed, 5))
     slabs = courses(14, 14, (64, 64), shift=0.37)
-    height, width = slabs.block.shape
-    fine, coarse = fractal(rng, height, width, 0.6), clouds(rng, height, width)
-    stain = smoothstep(1.1, 2.2, fractal(rng, height, width, 1.9))
-    tone = 1.0 + 0.11 * slabs.tone(rng) + 0.09 * fine + 0.08 * coarse - 0.30 * stain
-    face = (planes(colour) + planes((0.016, 0.0, -0.016)) * slabs.tone(rng)) * tone
+    noise = Noise.of(seed, 5, *slabs.block.shape)
+    fine, coarse = noise.fractal(0.6), noise.clouds()
+    stain = smoothstep(1.1, 2.2, noise.fractal(1.9))
+    tone = 1.0 + 0.11 * slabs.tone(noise.rng) + 0.09 * fine + 0.08 * coarse - 0.30 * stain
+    face = (planes(colour) + planes((0.016, 0.0, -0.016)) * slabs.tone(noise.rng)) * tone
     joint = planes((0.13, 0.125, 0.10)) * (1.0 + 0.2 * fine)
     texels = blend(joint, face, smoothstep(0.6, 2.0, slabs.edge_px + 0.35 * fine))
     return Finish("paving", Material(reflectance(texels)), (14 * PAVING_M, 14 * PAVING_M))
@@ -146,12 +122,11 @@ def paving(seed: int, colour: Colour = (0.37, 0.34, 0.295)) -> Finish:
 
 def stone_wall(seed: int, colour: Colour = (0.33, 0.30, 0.25)) -> Finish:
     """Rubble of grey and ochre stones with mossy joints."""
-    rng = np.random.default_rng((seed, 6))
     stones = courses(16, 10, (32, 52), shift=0.43)
-    height, width = stones.block.shape
-    fine, coarse = fractal(rng, height, width, 1.0), clouds(rng, height, width)
-    tone = 1.0 + 0.22 * stones.tone(rng) + 0.15 * fine + 0.1 * coarse
-    face = (planes(colour) + planes((0.035, 0.007, -0.028)) * stones.tone(rng)) * tone
+    noise = Noise.of(seed, 6, *stones.block.shape)
+    fine, coarse = noise.fractal(1.0), noise.clouds()
+    tone = 1.0 + 0.22 * stones.tone(noise.rng) + 0.15 * fine + 0.1 * coarse
+    face = (planes(colour) + planes((0.035, 0.007, -0.028)) * stones.tone(noise.rng)) * tone
     joint = blend((0.10, 0.09, 0.07), (0.07, 0.10, 0.03), smoothstep(0.0, 1.0, coarse))
     texels = blend(joint, face, smoothstep(1.0, 3.5, stones.edge_px + 1.4 * fine))
     return Finish("stone-wall", Material(reflectance(texels)), (2.6, 2.56))
@@ -159,13 +134,12 @@ def stone_wall(seed: int, colour: Colour = (0.33, 0.30, 0.25)) -> Finish:
 
 def terrazzo(seed: int, colour: Colour = (0.40, 0.37, 0.32)) -> Finish:
     """Floor tiles of 40 cm with chips of stone in them and worn joints."""
-    rng = np.random.default_rng((seed, 7))
     tiles = courses(10, 10, (96, 96), shift=0.0)
-    height, width = tiles.block.shape
-    fine, coarse = fractal(rng, height, width, 0.7), clouds(rng, height, width)
-    texels = planes(colour) * (1.0 + 0.12 * tiles.tone(rng) + 0.07 * fine + 0.09 * coarse)
+    noise = Noise.of(seed, 7, *tiles.block.shape)
+    fine, coarse = noise.fractal(0.7), noise.clouds()
+    texels = planes(colour) * (1.0 + 0.12 * tiles.tone(noise.rng) + 0.07 * fine + 0.09 * coarse)
     for count, radius in ((9000, 2.8), (2600, 6.0)):
-        distance, kind = spots(rng, height, width, count, radius)
+        distance, kind = noise.spots(count, radius)
         chip = blend((0.09, 0.08, 0.07), (0.64, 0.57, 0.46), kind)
         chip = blend(chip, (0.38, 0.15, 0.09), smoothstep(0.80, 0.82, kind))
         texels = blend(texels, chip, 0.85 * (1.0 - smoothstep(0.6, 1.0, distance)))
@@ -175,14 +149,13 @@ def terrazzo(seed: int, colour: Colour = (0.40, 0.37, 0.32)) -> Finish:
 
 def glazed_tiles(seed: int, colour: Colour = (0.16, 0.26, 0.23)) -> Finish:
     """Wall tiles of 20 x 10 cm in hand-made shades."""
-    rng = np.random.default_rng((seed, 8))
     tiles = courses(24, 14, (24, 48))
-    height, width = tiles.block.shape
-    fine, coarse = fractal(rng, height, width, 1.0), clouds(rng, height, width)
-    tint = planes((-0.02, 0.006, 0.018)) * tiles.tone(rng)
-    crazing = smoothstep(1.2, 1.9, fractal(rng, height, width, 1.7))
+    noise = Noise.of(seed, 8, *tiles.block.shape)
+    fine, coarse = noise.fractal(1.0), noise.clouds()
+    tint = planes((-0.02, 0.006, 0.018)) * tiles.tone(noise.rng)
+    crazing = smoothstep(1.2, 1.9, noise.fractal(1.7))
     face = (planes(colour) + tint) * (
-        1.0 + 0.26 * tiles.tone(rng) + 0.12 * fine + 0.10 * coarse - 0.3 * crazing
+        1.0 + 0.26 * tiles.tone(noise.rng) + 0.12 * fine + 0.10 * coarse - 0.3 * crazing
     )
     texels = blend((0.48, 0.46, 0.41), face, smoothstep(0.5, 1.8, tiles.edge_px))
     return Finish("glazed-tiles", Material(reflectance(texels), glossy=True), (2.8, 2.4))
@@ -190,13 +163,12 @@ def glazed_tiles(seed: int, colour: Colour = (0.16, 0.26, 0.23)) -> Finish:
 
 def ceiling_board(seed: int, colour: Colour = (0.64, 0.63, 0.59)) -> Finish:
     """Mineral fibre panels of 60 cm: wormholes, pinholes, water stains, a metal grid."""
-    rng = np.random.default_rng((seed, 9))
     panels = courses(6, 6, (150, 150), shift=0.0)
-    height, width = panels.block.shape
-    fine = fractal(rng, height, width, 0.6)
-    worm = smoothstep(0.9, 1.4, fractal(rng, height, width, 1.6))
-    stain = smoothstep(1.1, 2.2, clouds(rng, height, width, 2.9))
-    tone = 1.0 + 0.06 * panels.tone(rng) + 0.05 * fine + 0.06 * clouds(rng, height, width) - 0.52 * worm
+    noise = Noise.of(seed, 9, *panels.block.shape)
+    fine = noise.fractal(0.6)
+    worm = smoothstep(0.9, 1.4, noise.fractal(1.6))
+    stain = smoothstep(1.1, 2.2, noise.clouds(2.9))
+    tone = 1.0 + 0.06 * panels.tone(noise.rng) + 0.05 * fine + 0.06 * noise.clouds() - 0.52 * worm
     face = blend(planes(colour) * tone, planes((0.50, 0.40, 0.27)) * tone, 0.55 * stain)
     texels = blend((0.40, 0.40, 0.39), face, smoothstep(2.2, 3.6, panels.edge_px))
     return Finish("ceiling-board", Material(reflectance(texels)), (3.6, 3.6))

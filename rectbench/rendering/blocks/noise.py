@@ -5,6 +5,7 @@ While a texture is being mixed its colours are planes [3, H, W]: several times f
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
@@ -49,8 +50,7 @@ def _amplitude(height: int, width: int, scale_y: float, scale_x: float, slope: f
     fx = (np.fft.rfftfreq(width) * scale_x).astype(np.float32)
     square = fy * fy + fx * fx
     square[0, 0] = np.inf
-    amplitude: Field = square ** np.float32(-slope / 4)
-    return amplitude
+    return square ** np.float32(-slope / 4)
 
 
 def clouds(rng: np.random.Generator, height: int, width: int, slope: float = 2.5) -> Field:
@@ -80,6 +80,36 @@ def spots(
     distance[place] = away[inside]
     kind[place] = np.broadcast_to(rng.random((count, 1, 1), dtype=np.float32), away.shape)[inside]
     return distance.reshape(height, width), kind.reshape(height, width)
+
+
+@dataclass(frozen=True, eq=False)
+class Noise:
+    """The fields [height, width] that one texture is mixed from, drawn one after the other."""
+
+    rng: np.random.Generator
+    height: int
+    width: int
+
+    @classmethod
+    def of(cls, seed: int, texture: int, height: int, width: int | None = None) -> Noise:
+        """Those of a texture, by its number, for a seed; square where the width is left out."""
+        return cls(np.random.default_rng((seed, texture)), height, width or height)
+
+    def fractal(self, slope: float) -> Field:
+        """See `fractal`."""
+        return fractal(self.rng, self.height, self.width, slope)
+
+    def clouds(self, slope: float = 2.5) -> Field:
+        """See `clouds`."""
+        return clouds(self.rng, self.height, self.width, slope)
+
+    def streaks(self, aspect: float, slope: float = 2.0) -> Field:
+        """See `streaks`."""
+        return streaks(self.rng, self.height, self.width, aspect, slope)
+
+    def spots(self, count: int, radius_px: float) -> tuple[Field, Field]:
+        """See `spots`."""
+        return spots(self.rng, self.height, self.width, count, radius_px)
 
 
 def planes(colour: ArrayLike) -> Field:

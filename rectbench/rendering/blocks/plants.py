@@ -115,8 +115,16 @@ def leaves(
     width: float = 0.55,
     droop: float = 0.2,
     share: tuple[float, float] = (0.2, 1.0),
+    detail: float = 1.0,
 ) -> Model:
-    """Leaves of about `length` metres, `width` times as wide, along twigs."""
+    """Leaves of about `length` metres, `width` times as wide, along twigs.
+
+    Their number falls with `detail` while the area they cover stays.
+    """
+    every = max(1, round(1.0 / (per_twig * detail)))
+    count = max(1, round(per_twig * detail))
+    length = length * np.sqrt(per_twig / count) * np.sqrt(every)
+    twigs, per_twig = Branches(twigs.paths[::every], twigs.radii[::every]), count
     total = len(twigs.paths) * per_twig
     branch = np.repeat(np.arange(len(twigs.paths)), per_twig)
     base, ahead, _ = twigs.points(branch, rng.uniform(*share, total))
@@ -153,38 +161,23 @@ def broadleaf(
     """
     rng = np.random.default_rng((seed, 81))
     stem = trunk(rng, 0.85 * height, 0.024 * height)
-    limbs = sprout(
-        rng,
-        stem,
-        11,
-        length=(0.38 * height, 0.16 * height),
-        share=(clear, 1.0),
-        angle_deg=(40, 70),
-        thickness=0.5,
-    )
+    long = (0.38 * height, 0.16 * height)
+    limbs = sprout(rng, stem, 11, length=long, share=(clear, 1.0), angle_deg=(40, 70), thickness=0.5)
     boughs = sprout(rng, limbs, 6, length=(0.19 * height, 0.09 * height), thickness=0.6, knots=5)
     twigs = sprout(rng, boughs, 5, length=(0.09 * height, 0.05 * height), lift=0.1, thickness=0.6, knots=4)
-    crown = _crown(rng, twigs, foliage, 52, 0.105, detail)
-    return (
-        _wood([(stem, 12, 0.0), (limbs, 7, 0.0), (boughs, 4, 0.1), (twigs, 3, 0.4)], detail).of(bark) + crown
-    )
+    crown = leaves(rng, twigs, foliage, 52, 0.105, detail=detail)
+    wood = _wood([(stem, 12, 0.0), (limbs, 7, 0.0), (boughs, 4, 0.1), (twigs, 3, 0.4)], detail)
+    return wood.of(bark) + crown
 
 
 def birch(seed: int, bark: Finish, foliage: Prints, *, height: float = 10.0, detail: float = 1.0) -> Model:
     """A slender white stem with thin hanging twigs and small leaves; `detail` as for `broadleaf`."""
     rng = np.random.default_rng((seed, 82))
     stem = trunk(rng, height, 0.013 * height, sway=0.05)
-    limbs = sprout(
-        rng,
-        stem,
-        26,
-        length=(0.22 * height, 0.06 * height),
-        share=(0.3, 1.0),
-        angle_deg=(30, 55),
-        thickness=0.4,
-    )
+    long = (0.22 * height, 0.06 * height)
+    limbs = sprout(rng, stem, 26, length=long, share=(0.3, 1.0), angle_deg=(30, 55), thickness=0.4)
     twigs = sprout(rng, limbs, 8, length=(0.10 * height, 0.05 * height), lift=-0.55, thickness=0.5, knots=5)
-    crown = _crown(rng, twigs, foliage, 34, 0.07, detail, width=0.7, droop=0.8)
+    crown = leaves(rng, twigs, foliage, 34, 0.07, width=0.7, droop=0.8, detail=detail)
     return _wood([(stem, 12, 0.0), (limbs, 4, 0.0), (twigs, 3, 0.4)], detail).of(bark) + crown
 
 
@@ -199,7 +192,7 @@ def spruce(seed: int, bark: Finish, foliage: Prints, *, height: float = 11.0, de
     twigs = sprout(
         rng, boughs, 12, length=(0.055 * height, 0.025 * height), lift=-0.3, angle_deg=(40, 60), knots=3
     )
-    crown = _crown(rng, twigs, foliage, 16, 0.10, detail, width=0.2, droop=0.3, share=(0.0, 1.0))
+    crown = leaves(rng, twigs, foliage, 16, 0.10, width=0.2, droop=0.3, share=(0.0, 1.0), detail=detail)
     return _wood([(stem, 12, 0.0), (boughs, 4, 0.1)], detail).of(bark) + crown
 
 
@@ -207,28 +200,6 @@ def _wood(orders: list[tuple[Branches, int, float]], detail: float) -> Shape:
     """Tubes of (branches, sides), those left out whose least detail is not reached."""
     return join(
         branches.wood(sides if detail > 0.2 else 4) for branches, sides, least in orders if detail >= least
-    )
-
-
-def _crown(
-    rng: np.random.Generator,
-    twigs: Branches,
-    foliage: Prints,
-    per_twig: int,
-    length: float,
-    detail: float,
-    *,
-    width: float = 0.55,
-    droop: float = 0.2,
-    share: tuple[float, float] = (0.2, 1.0),
-) -> Model:
-    """Leaves whose number falls with `detail` while the area they cover stays."""
-    count = max(1, round(per_twig * detail))
-    larger = np.sqrt(per_twig / count)
-    every = max(1, round(1.0 / (per_twig * detail)))
-    some = Branches(twigs.paths[::every], twigs.radii[::every])
-    return leaves(
-        rng, some, foliage, count, length * larger * np.sqrt(every), width=width, droop=droop, share=share
     )
 
 
@@ -325,14 +296,10 @@ def potted_plant(
     """A house plant with long arching leaves in a clay pot."""
     rng = np.random.default_rng((seed, 89))
     wide = 0.19 * np.sqrt(height)
-    profile = [
-        (0.0, 0.0),
-        (0.7 * wide, 0.0),
-        (wide, 1.6 * wide),
-        (1.08 * wide, 1.6 * wide),
-        (1.08 * wide, 1.8 * wide),
-    ]
-    vessel = turned([*profile, (0.9 * wide, 1.8 * wide), (0.88 * wide, 1.65 * wide)])
+    vessel = turned([
+        (0.0, 0.0), (0.7 * wide, 0.0), (wide, 1.6 * wide), (1.08 * wide, 1.6 * wide),
+        (1.08 * wide, 1.8 * wide), (0.9 * wide, 1.8 * wide), (0.88 * wide, 1.65 * wide),
+    ])  # fmt: skip
     earth = turned([(0.9 * wide, 1.66 * wide), (0.0, 1.7 * wide)])
     angle = GOLDEN_ANGLE * np.arange(count)
     out = np.stack([np.cos(angle), np.sin(angle), np.zeros(count)], axis=1)

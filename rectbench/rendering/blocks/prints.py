@@ -125,8 +125,7 @@ def _words(rng: np.random.Generator, height: int, width: int, line: int) -> Fiel
     body = letters.repeat(line, axis=0)[:height]
     x_height = (np.arange(height) % line) < 0.55 * line
     broken = rng.random((height, width)) < 0.8
-    ink: Field = (body & x_height[:, None] & broken).astype(np.float32)
-    return ink
+    return (body & x_height[:, None] & broken).astype(np.float32)
 
 
 def book_spines(seed: int) -> Prints:

@@ -160,14 +160,11 @@ def cylinder(radius: float, height: float, sides: int = 24) -> Shape:
 
 def ball(width: float, depth: float, height: float, roundness: float = 1.0) -> Shape:
     """An ellipsoid standing on z = 0; below 1, `roundness` squares it off into a cushion."""
-    latitude, longitude = (
-        np.linspace(-np.pi / 2, np.pi / 2, 13),
-        np.linspace(0, 2 * np.pi, 24, endpoint=False),
-    )
+    latitude = np.linspace(-np.pi / 2, np.pi / 2, 13)
+    longitude = np.linspace(0, 2 * np.pi, 24, endpoint=False)
 
     def bent(values: FloatArray) -> FloatArray:
-        curve: FloatArray = np.sign(values) * np.abs(values) ** roundness
-        return curve
+        return np.sign(values) * np.abs(values) ** roundness
 
     level = bent(np.cos(latitude))[:, None]
     sections = np.stack([

@@ -22,16 +22,10 @@ def lamp_post(iron: Finish, glass: Finish, *, height: float = 4.6) -> Model:
         (0.0, height - 0.62),
     ], 14)  # fmt: skip
     bar = rod((-0.32, 0, height - 1.0), (0.32, 0, height - 1.0), 0.02)
-    cap = turned(
-        [
-            (0.0, height),
-            (0.04, height - 0.08),
-            (0.25, height - 0.18),
-            (0.25, height - 0.2),
-            (0.0, height - 0.2),
-        ],
-        6,
-    )
+    cap = turned([
+        (0.0, height), (0.04, height - 0.08), (0.25, height - 0.18), (0.25, height - 0.2),
+        (0.0, height - 0.2),
+    ], 6)  # fmt: skip
     cage = join(
         rod((0.12 * c, 0.12 * s, height - 0.62), (0.2 * c, 0.2 * s, height - 0.2), 0.012, 4)
         for c, s in _ring(6)
@@ -66,9 +60,8 @@ def litter_bin(body: Finish, iron: Finish) -> Model:
     """A slatted bin, 90 cm high, on a post."""
     slats = [plank(0.07, 0.02, 0.62).at(0, -0.22).at(0, 0, 0.2, turn_deg=20.0 * k) for k in range(18)]
     hoops = join(tubes(_hoop(0.225, z), 0.014, 6) for z in (0.24, 0.52, 0.80))
-    return join(slats).of(body) + (
-        cylinder(0.2, 0.55, 16).at(z=0.22) + rod((0, 0, 0), (0, 0, 0.3), 0.05) + hoops
-    ).of(iron)
+    drum = cylinder(0.2, 0.55, 16).at(z=0.22) + rod((0, 0, 0), (0, 0, 0.3), 0.05)
+    return join(slats).of(body) + (drum + hoops).of(iron)
 
 
 def _hoop(radius: float, z: float, segments: int = 24) -> list[tuple[float, float, float]]:
@@ -78,9 +71,8 @@ def _hoop(radius: float, z: float, segments: int = 24) -> list[tuple[float, floa
 
 def bollard(iron: Finish) -> Model:
     """A cast bollard, 95 cm high."""
-    return turned(
-        [(0.1, 0.0), (0.1, 0.1), (0.075, 0.16), (0.06, 0.75), (0.085, 0.8), (0.085, 0.86), (0.0, 0.95)], 14
-    ).of(iron)
+    profile = [(0.1, 0.0), (0.1, 0.1), (0.075, 0.16), (0.06, 0.75), (0.085, 0.8), (0.085, 0.86), (0.0, 0.95)]
+    return turned(profile, 14).of(iron)
 
 
 def pillar_box(red: Finish, black: Finish) -> Model:
@@ -127,11 +119,8 @@ _BODY = [
 ]  # fmt: skip
 """Stations from the tail to the nose, metres: x, half width, bottom, top."""
 _CABIN = [
-    (-1.98, 0.70, 0.9, 0.93),
-    (-1.62, 0.69, 0.9, 1.41),
-    (0.22, 0.69, 0.9, 1.42),
-    (1.08, 0.70, 0.88, 0.90),
-]
+    (-1.98, 0.70, 0.9, 0.93), (-1.62, 0.69, 0.9, 1.41), (0.22, 0.69, 0.9, 1.42), (1.08, 0.70, 0.88, 0.90),
+]  # fmt: skip
 _ROOF = [(-1.72, 0.60, 1.42), (-1.55, 0.66, 1.445), (-0.6, 0.68, 1.46), (0.1, 0.67, 1.45), (0.28, 0.6, 1.42)]
 """x, half width, top."""
 
@@ -140,14 +129,9 @@ def _body_ring(x: float, half_width: float, bottom: float, top: float) -> list[t
     """A rounded rectangle across the car at `x`, narrower at the top."""
     middle, shoulder = 0.45 * bottom + 0.55 * top, bottom + 0.9 * (top - bottom)
     half = [
-        (0.0, top),
-        (0.8, top),
-        (0.93, shoulder),
-        (1.0, middle),
-        (0.97, bottom + 0.04),
-        (0.85, bottom),
-        (0.0, bottom),
-    ]
+        (0.0, top), (0.8, top), (0.93, shoulder), (1.0, middle),
+        (0.97, bottom + 0.04), (0.85, bottom), (0.0, bottom),
+    ]  # fmt: skip
     right = [(x, half_width * y, z) for y, z in half]
     left = [(x, -half_width * y, z) for y, z in half[-2:0:-1]]
     return right + left

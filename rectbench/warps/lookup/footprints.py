@@ -29,7 +29,7 @@ UNSHRUNK = 1.01
 MOST_SAMPLES = 64
 """A pixel that needs more reads them from the source image halved as often as it takes.
 
-With 16 the error against 16 x 16 samples is thrice as large where an image is made 5 times smaller.
+With 16 the error against 16 x 16 samples is three times as large where an image is made 5 times smaller.
 """
 WHOLE = 1e-3
 """A number of samples this little above a whole one is that one."""
@@ -135,18 +135,12 @@ def remaining(A: NDArray[Any]) -> NDArray[Any]:
     large, small = mean + radius, mean - radius
     f_large, f_small = (np.sqrt(1 - 1 / np.where(square > UNSHRUNK, square, 1)) for square in (large, small))
     slope = (f_large - f_small) / np.maximum(2 * radius, np.finfo(A.dtype).tiny)
-    f_top, f_bottom, f_mixed = (
-        f_small + slope * (radius + half_gap),
-        f_small + slope * (radius - half_gap),
-        slope * mixed,
-    )
+    f_top, f_bottom = f_small + slope * (radius + half_gap), f_small + slope * (radius - half_gap)
+    f_mixed = slope * mixed
     (p, q), (r, s) = A
-    return np.stack(
-        [
-            np.stack([f_top * p + f_mixed * r, f_top * q + f_mixed * s]),
-            np.stack([f_mixed * p + f_bottom * r, f_mixed * q + f_bottom * s]),
-        ]
-    )
+    top = np.stack([f_top * p + f_mixed * r, f_top * q + f_mixed * s])
+    bottom = np.stack([f_mixed * p + f_bottom * r, f_mixed * q + f_bottom * s])
+    return np.stack([top, bottom])
 
 
 def _gram(A: NDArray[Any]) -> tuple[NDArray[Any], ...]:

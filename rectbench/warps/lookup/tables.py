@@ -12,7 +12,8 @@ from rectbench import llvm
 from rectbench.formulas.evaluation import namespaced, opaque
 from rectbench.formulas.namespaces import NUMPY, drjit_namespace
 from rectbench.formulas.protocol import Formulas
-from rectbench.types import BoolArray, FloatArray
+from rectbench.types import BoolArray
+from rectbench.warps.targets import Axis
 from rectbench.warps.warp import Warp, rotated_back
 
 OUTSIDE = -16.0
@@ -35,8 +36,7 @@ def lookup_table(warp: Warp, size: tuple[int, int]) -> tuple[FloatMap, FloatMap]
 def reads_source(map_x: FloatMap, map_y: FloatMap, size: tuple[int, int]) -> BoolArray:
     """Mask of table entries that read nothing but pixels of a source image of `size`."""
     w, h = size
-    mask: BoolArray = (map_x >= 0) & (map_x <= w - 1) & (map_y >= 0) & (map_y <= h - 1)
-    return mask
+    return (map_x >= 0) & (map_x <= w - 1) & (map_y >= 0) & (map_y <= h - 1)
 
 
 def _source_pixel(warp: Warp, c: Any, column: Any, row: Any, xp: Formulas) -> tuple[Any, Any]:
@@ -46,22 +46,17 @@ def _source_pixel(warp: Warp, c: Any, column: Any, row: Any, xp: Formulas) -> tu
     return xp.where(known, u, OUTSIDE), xp.where(known, v, OUTSIDE)
 
 
-def _fill_with_numpy(
-    warp: Warp, columns: tuple[FloatArray, ...], rows: tuple[FloatArray, ...]
-) -> tuple[FloatMap, FloatMap]:
+def _fill_with_numpy(warp: Warp, columns: Axis, rows: Axis) -> tuple[FloatMap, FloatMap]:
     c: SimpleNamespace = namespaced(warp.constants)
     along = tuple(values[None, :] for values in columns)
     with np.errstate(all="ignore"):
         maps = _source_pixel(warp, c, along, tuple(values[:, None] for values in rows), NUMPY)
     shape = (rows[0].size, columns[0].size)
-    return np.broadcast_to(maps[0], shape).astype(np.float32), np.broadcast_to(maps[1], shape).astype(
-        np.float32
-    )
+    map_x, map_y = (np.broadcast_to(values, shape).astype(np.float32) for values in maps)
+    return map_x, map_y
 
 
-def _fill_compiled(
-    warp: Warp, columns: tuple[FloatArray, ...], rows: tuple[FloatArray, ...]
-) -> tuple[FloatMap, FloatMap]:
+def _fill_compiled(warp: Warp, columns: Axis, rows: Axis) -> tuple[FloatMap, FloatMap]:
     xp = drjit_namespace()
     import drjit as dr
     from drjit.llvm import Float, Float64, UInt32

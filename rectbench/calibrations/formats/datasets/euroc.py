@@ -7,12 +7,10 @@ writes `distortion_coeffs` and `omni` too.
 
 from __future__ import annotations
 
+from rectbench.calibrations.assembling import camera_of
 from rectbench.calibrations.contract import CameraFormat, Given, PosedCamera
-from rectbench.calibrations.documents.faults import blaming
-from rectbench.calibrations.documents.sections import Section
-from rectbench.calibrations.documents.sources import Source
+from rectbench.calibrations.documents import Section, Source
 from rectbench.calibrations.formats.odometry.kalibr import EQUI, FOCAL, RADTAN
-from rectbench.cameras import Camera
 
 MODELS = {
     "none": ("pinhole", ()),
@@ -30,20 +28,16 @@ def read_posed(source: Source, given: Given) -> PosedCamera:
     model, params = _read_lens(file)
     size = file.size("resolution", given.size)
     T_body_camera = file.rigid("T_BS", "the pose from sensor to body, metres")
-    with blaming(f"{source.path}: intrinsics"):
-        return PosedCamera(source.path, Camera(model, size, params), T_body_camera)
+    camera = camera_of(f"{source.path}: intrinsics", model, size, params)
+    return PosedCamera(source.path, camera, T_body_camera)
 
 
 def _read_lens(file: Section) -> tuple[str, dict[str, float]]:
-    expected = ", ".join(MODELS)
-    kind = file.text("distortion_model", expected) if "distortion_model" in file else "none"
+    kind = file.choice("distortion_model", MODELS, "none")
     if file.values.get("camera_model", "pinhole") != "pinhole":
         raise file.fault("camera_model", "pinhole")
-    if kind not in MODELS:
-        raise file.fault("distortion_model", expected)
     model, order = MODELS[kind]
-    focal = file.numbers("intrinsics", f"4 finite numbers ({' '.join(FOCAL)})", 4)
-    params = dict(zip(FOCAL, focal, strict=True))
+    params = file.named("intrinsics", FOCAL)
     if not order:
         return model, params
     key = "distortion_coeffs" if "distortion_coeffs" in file else "distortion_coefficients"

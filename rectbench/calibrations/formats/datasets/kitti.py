@@ -16,21 +16,17 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from rectbench.calibrations.assembling import rig_of_posed, single
+from rectbench.calibrations.assembling import inverse, rig_of_posed, rigid, single
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
-from rectbench.calibrations.documents.faults import blaming
-from rectbench.calibrations.documents.sections import Section
-from rectbench.calibrations.documents.sources import Source
-from rectbench.calibrations.formats.toolboxes.opencv import camera_matrix, lens_parameters
-from rectbench.calibrations.transforms import inverse, rigid
+from rectbench.calibrations.documents import Section, Source, errors_at
+from rectbench.calibrations.formats.toolboxes.opencv import camera_matrix, opencv_camera
 from rectbench.cameras import Camera
-from rectbench.rigs.rig import Rig, checked_rotation
+from rectbench.rigs.rig import Rig
 
 
 def _read(sources: Sequence[Source], given: Given) -> Rig:
     source = single(sources)
-    lines = (line.partition(":") for line in source.text.splitlines())
-    file = Section(source.path, "", {key.strip(): values.split() for key, _, values in lines})
+    file = source.table(":")
     if "P0" in file:
         names = given.cameras or ("P0", "P1")
         return rig_of_posed([_read_rectified(file, name, given) for name in names], given, source.name)
@@ -40,14 +36,8 @@ def _read(sources: Sequence[Source], given: Given) -> Rig:
 
 def _read_posed(file: Section, name: str, given: Given) -> PosedCamera:
     size = file.size(f"S_{name}", given.size)
-    params = camera_matrix(file, f"K_{name}", "pinhole")
-    params |= lens_parameters(file, f"D_{name}", "pinhole", (5,))
-    with blaming(file.at(f"K_{name}")):
-        camera = Camera("pinhole", size, params)
-    R = file.array(f"R_{name}", "a 3x3 rotation", (9,)).reshape(3, 3)
-    t = file.array(f"T_{name}", "three metres", (3,))
-    with blaming(file.at(f"R_{name}")):
-        T_camera_first = rigid(checked_rotation(R, "it"), t)
+    camera = opencv_camera(file, f"K_{name}", f"D_{name}", "pinhole", size, counts=(5,))
+    T_camera_first = rigid(file.rotation(f"R_{name}"), file.array(f"T_{name}", "three metres", (3,)))
     return PosedCamera(file.at(f"R_{name}"), camera, inverse(T_camera_first))
 
 
@@ -55,7 +45,7 @@ def _read_rectified(file: Section, name: str, given: Given) -> PosedCamera:
     P = file.array(name, "12 numbers, a 3x4 projection", (12,)).reshape(3, 4)
     size = file.sides("width", "height", given.size)
     K = Section(file.file, file.key, {name: P[:, :3].tolist()})
-    with blaming(file.at(name)):
+    with errors_at(file.at(name)):
         camera = Camera("pinhole", size, camera_matrix(K, name, "pinhole"))
         return PosedCamera(file.at(name), camera, rigid(np.eye(3), -np.linalg.solve(P[:, :3], P[:, 3])))
 

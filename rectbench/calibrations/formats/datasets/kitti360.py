@@ -9,15 +9,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from dataclasses import replace
 
-from rectbench.calibrations.assembling import placed, rig_of_posed
+from rectbench.calibrations.assembling import rig_of_posed
 from rectbench.calibrations.contract import Given, RigFormat
-from rectbench.calibrations.documents.sections import Section
-from rectbench.calibrations.documents.sources import Source
+from rectbench.calibrations.documents import Source
 from rectbench.calibrations.formats.toolboxes import camodocal
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig
-from rectbench.types import FloatArray
 
 FISHEYES = ("image_02.yaml", "image_03.yaml")
 
@@ -28,17 +27,12 @@ def _read(sources: Sequence[Source], given: Given) -> Rig:
     cameras = cameras or [table.beside(name) for name in FISHEYES]
     if len(cameras) != 2:
         raise InvalidInput(f"{table.path}: comes with {len(cameras)} cameras; expected two, such as image_02")
-    posed = [
-        placed(camodocal.read_posed(camera, given), _read_pose(table, camera.name)) for camera in cameras
-    ]
+    poses = table.table(":")
+    posed = []
+    for camera in cameras:
+        T = poses.rigid(camera.name, "12 numbers, the 3x4 pose of a camera")
+        posed.append(replace(camodocal.read_posed(camera, given), T_shared_camera=T))
     return rig_of_posed(posed, given, "kitti360")
-
-
-def _read_pose(table: Source, camera: str) -> FloatArray:
-    lines = (line.partition(":") for line in table.text.splitlines())
-    entries = {name.strip(): numbers.split() for name, _, numbers in lines}
-    pose: FloatArray = Section(table.path, "", entries).rigid(camera, "12 numbers, the 3x4 pose of a camera")
-    return pose
 
 
 def _recognises(source: Source) -> bool:

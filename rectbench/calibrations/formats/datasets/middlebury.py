@@ -9,35 +9,23 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-import numpy as np
-
-from rectbench.calibrations.assembling import assembled, single
+from rectbench.calibrations.assembling import camera_of, side_by_side, single
 from rectbench.calibrations.contract import Given, RigFormat
-from rectbench.calibrations.documents.faults import blaming
-from rectbench.calibrations.documents.sections import Section
-from rectbench.calibrations.documents.sources import Source
+from rectbench.calibrations.documents import Source
 from rectbench.calibrations.formats.toolboxes.opencv import camera_matrix
-from rectbench.calibrations.transforms import rigid
-from rectbench.cameras import Camera
 from rectbench.rigs.rig import Rig
 
 
 def _read(sources: Sequence[Source], given: Given) -> Rig:
     source = single(sources)
-    lines = (line.partition("=") for line in source.text.splitlines())
-    entries = {key.strip(): re.sub(r"[\[\];,]", " ", value).split() for key, _, value in lines}
-    file = Section(
-        source.path, "", {key: words[0] if len(words) == 1 else words for key, words in entries.items()}
-    )
+    file = source.table("=")
     size = file.sides("width", "height", given.size)
-    cameras = []
-    for key in ("cam0", "cam1"):
-        params = camera_matrix(file, key, "pinhole")
-        with blaming(file.at(key)):
-            cameras.append(Camera("pinhole", size, params))
-    T = rigid(np.eye(3), [-file.number("baseline", "millimetres"), 0.0, 0.0])
-    left, right = cameras
-    return assembled(left, right, T, given, file.at("baseline"), source.name, unit="mm")
+    left, right = (
+        camera_of(file.at(key), "pinhole", size, camera_matrix(file, key, "pinhole"))
+        for key in ("cam0", "cam1")
+    )
+    baseline = file.number("baseline", "millimetres")
+    return side_by_side(left, right, baseline, given, file.at("baseline"), source.name, unit="mm")
 
 
 def _recognises(source: Source) -> bool:

@@ -12,22 +12,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from rectbench.calibrations.assembling import chosen, rig_of_posed, single
+from rectbench.calibrations.assembling import chosen, rig_of_posed, rigid, single
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
-from rectbench.calibrations.documents.faults import blaming
-from rectbench.calibrations.documents.numbers import finite_number
-from rectbench.calibrations.documents.sections import Section
-from rectbench.calibrations.documents.sources import Source
-from rectbench.calibrations.formats.toolboxes.opencv import (
-    CAMERA_MODELS,
-    PINHOLE_COUNTS,
-    camera_matrix,
-    lens_parameters,
-)
-from rectbench.calibrations.transforms import rigid
-from rectbench.cameras import Camera
+from rectbench.calibrations.documents import Section, Source, finite_number
+from rectbench.calibrations.formats.toolboxes.opencv import opencv_camera
 from rectbench.errors import InvalidInput
-from rectbench.rigs.rig import Rig, checked_rotation
+from rectbench.rigs.rig import Rig
 from rectbench.types import FloatArray
 
 LENSES = {0: "pinhole", 1: "fisheye"}
@@ -84,11 +74,10 @@ def _to_last(cameras: dict[str, Section], name: str) -> tuple[str, FloatArray]:
         next_name = _socket(extrinsics.number("toCameraSocket", "a socket, or -1"))
         if next_name not in cameras:
             return name, T
-        R = extrinsics.matrix("rotationMatrix", "a 3x3 rotation", 3, 3)
+        R = extrinsics.rotation("rotationMatrix")
         shift = extrinsics.section("translation", "x, y and z, centimetres")
         t = [shift.number(axis, "centimetres") for axis in "xyz"]
-        with blaming(extrinsics.at("rotationMatrix")):
-            T = rigid(checked_rotation(R, "it"), t) @ T
+        T = rigid(R, t) @ T
         name = next_name
     raise InvalidInput(f"{cameras[name].at('extrinsics')} leads back to its own camera; expected an end, -1")
 
@@ -98,13 +87,9 @@ def _read_posed(section: Section, T: FloatArray, given: Given) -> PosedCamera:
     if kind not in LENSES:
         raise section.fault("cameraType", "0 (perspective) or 1 (fisheye)")
     lens = LENSES[int(kind)]
-    params = camera_matrix(section, "intrinsicMatrix", lens)
-    counts = (4,) if lens == "fisheye" else PINHOLE_COUNTS
-    params |= lens_parameters(section, "distortionCoeff", lens, counts)
     size = section.sides("width", "height", given.size)
-    where = section.at("").removesuffix(".")
-    with blaming(where):
-        return PosedCamera(where, Camera(CAMERA_MODELS[lens], size, params), T)
+    camera = opencv_camera(section, "intrinsicMatrix", "distortionCoeff", lens, size, section.where)
+    return PosedCamera(section.where, camera, T)
 
 
 FORMAT = RigFormat(

@@ -1,7 +1,7 @@
 """The INI of ROS' camera_calibration, `ost.txt` or `.ini`, of one camera, or of a pair one after the other.
 
 Labels stand alone in a line, such as `camera matrix`, above their numbers. Of a pair the first camera is the
-left one. What the numbers mean, and where the pose is, `calibrations.devices.ros` says; the distortion is
+left one. What the numbers mean, and where the pose is, `formats.devices.ros` says; the distortion is
 plumb_bob, or rational_polynomial where there are eight coefficients.
 """
 
@@ -12,8 +12,7 @@ from collections.abc import Sequence
 
 from rectbench.calibrations.assembling import rig_of_posed, single
 from rectbench.calibrations.contract import CameraFormat, Given, PosedCamera, RigFormat
-from rectbench.calibrations.documents.sections import Section
-from rectbench.calibrations.documents.sources import Source
+from rectbench.calibrations.documents import Section, Source
 from rectbench.calibrations.formats.devices.ros import posed_of
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig

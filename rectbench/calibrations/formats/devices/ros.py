@@ -18,21 +18,18 @@ from typing import Any
 
 import numpy as np
 
+from rectbench.calibrations.assembling import rigid
 from rectbench.calibrations.contract import CameraFormat, Given, PosedCamera
-from rectbench.calibrations.documents.faults import blaming
-from rectbench.calibrations.documents.sections import Section
-from rectbench.calibrations.documents.sources import Source
+from rectbench.calibrations.documents import Section, Source, errors_at
 from rectbench.calibrations.formats.toolboxes.opencv import (
+    COUNTS,
     FOCAL,
     ORDERS,
-    PINHOLE_COUNTS,
-    camera_matrix,
     distortion_of,
-    lens_parameters,
     matrix_of,
+    opencv_camera,
 )
 from rectbench.calibrations.layouts import layout_of
-from rectbench.calibrations.transforms import rigid
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
 from rectbench.rigs.file_formats import Writing
@@ -69,19 +66,12 @@ def read_posed(source: Source, given: Given) -> PosedCamera:
 
 def posed_of(file: Section, given: Given) -> PosedCamera:
     """The same of the content of a file."""
-    kind = file.text("distortion_model", ", ".join(MODELS)) if "distortion_model" in file else "plumb_bob"
-    if kind not in MODELS:
-        raise file.fault("distortion_model", ", ".join(MODELS))
-    lens = MODELS[kind]
+    lens = MODELS[file.choice("distortion_model", MODELS, "plumb_bob")]
     K, D = _key(file, "K"), _key(file, "D")
-    params = camera_matrix(file, K, lens)
-    params |= lens_parameters(file, D, lens, (0, 4) if lens == "fisheye" else (0, *PINHOLE_COUNTS))
     width, height = ("image_width", "image_height") if "image_width" in file else ("width", "height")
     size = file.sides(width, height, given.size)
-    with blaming(f"{file.at(K)}, {D}"):
-        camera = Camera("kannala-brandt" if lens == "fisheye" else "pinhole", size, params)
-    where = file.at("").removesuffix(": ")
-    return PosedCamera(where, camera, rectified_place(file, _key(file, "R"), _key(file, "P")))
+    camera = opencv_camera(file, K, D, lens, size, f"{file.at(K)}, {D}", (0, *COUNTS[lens]))
+    return PosedCamera(file.where, camera, rectified_place(file, _key(file, "R"), _key(file, "P")))
 
 
 def rectified_place(file: Section, R_key: str, P_key: str) -> FloatArray | None:
@@ -92,14 +82,14 @@ def rectified_place(file: Section, R_key: str, P_key: str) -> FloatArray | None:
     R = file.array(R_key, "the 3x3 rectification matrix", (9,)).reshape(3, 3)
     if not np.any(R) or not np.any(P):  # how an uncalibrated camera is published
         return None
-    with blaming(file.at(R_key)):
+    with errors_at(file.at(R_key)):
         R = checked_rotation(R, "it")
     focal = P[[0, 1, 2], [0, 1, 2]]
     if not (np.all(focal > 0) and focal[2] == 1):
         raise InvalidInput(
             f"{file.at(P_key)} has no focal length; expected [fx 0 cx Tx; 0 fy cy Ty; 0 0 1 0]"
         )
-    with blaming(file.at(P_key)):
+    with errors_at(file.at(P_key)):
         return rigid(R, -np.linalg.solve(P[:, :3], P[:, 3]))
 
 

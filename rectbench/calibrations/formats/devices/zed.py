@@ -14,12 +14,9 @@ from collections.abc import Sequence
 import cv2
 import numpy as np
 
-from rectbench.calibrations.assembling import assembled, single
+from rectbench.calibrations.assembling import assembled, camera_of, rigid, single
 from rectbench.calibrations.contract import Given, RigFormat
-from rectbench.calibrations.documents.faults import blaming, one_line
-from rectbench.calibrations.documents.sections import Section
-from rectbench.calibrations.documents.sources import Source
-from rectbench.calibrations.transforms import rigid
+from rectbench.calibrations.documents import Section, Source, one_line
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig
@@ -82,8 +79,8 @@ def _resolution(file: Section, given: Given) -> str:
 def _read_camera(file: Section, name: str, size: tuple[int, int]) -> Camera:
     section = file.section(name, "a camera")
     names = [*FOCAL, *(name for name in DISTORTION if name in section)]
-    with blaming(section.at("").removesuffix(".")):
-        return Camera("pinhole", size, {name: section.number(name, "a number") for name in names})
+    params = {name: section.number(name, "a number") for name in names}
+    return camera_of(section.where, "pinhole", size, params)
 
 
 def _number(stereo: Section, key: str, resolution: str) -> float:

@@ -18,13 +18,10 @@ from typing import Any
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from rectbench.calibrations.assembling import rig_of_posed, single
+from rectbench.calibrations.assembling import camera_of, inverse, pose_matrix, rig_of_posed, rigid, single
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
-from rectbench.calibrations.documents.faults import blaming, shown
-from rectbench.calibrations.documents.sections import Section
-from rectbench.calibrations.documents.sources import Source
+from rectbench.calibrations.documents import Section, Source, shown
 from rectbench.calibrations.layouts import layout_of
-from rectbench.calibrations.transforms import inverse, pose_matrix, rigid
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
 from rectbench.rigs.file_formats import Writing, lost_angles
@@ -86,22 +83,18 @@ def _place(name: str, file: str) -> int:
 
 def _read_posed(content: Section, index: int, size: tuple[int, int] | None) -> PosedCamera:
     camera = content.item("intrinsics", index, "a camera, of two at least")
-    names = ", ".join(MODELS)
-    kind = camera.text("camera_type", names)
-    if kind not in MODELS:
-        raise camera.fault("camera_type", names)
+    kind = camera.choice("camera_type", MODELS)
     model, order = MODELS[kind]
     intrinsics = camera.section("intrinsics", f"the numbers {' '.join(order)}")
     params = {name: intrinsics.number(name, "a number") for name in order}
     params |= {"beta": 1.0} if kind == "ucm" else {}
     params |= {"omega": params.pop("w")} if kind == "fov" else {}
     image = content.section_of_list("resolution").size(str(index), size)
-    where = camera.at("").removesuffix(".")
     rpmax = intrinsics.number("rpmax", "a radius") if "rpmax" in intrinsics else 0.0
     edge = math.degrees(math.atan(rpmax)) if rpmax > 0 else None  # where radtan8 ends, on the plane z = 1
-    with blaming(where):
-        built = Camera(model, image, params, edge)
-    return PosedCamera(where, built, _read_pose(content.item("T_imu_cam", index, "a pose, of two at least")))
+    built = camera_of(camera.where, model, image, params, edge)
+    pose = content.item("T_imu_cam", index, "a pose, of two at least")
+    return PosedCamera(camera.where, built, _read_pose(pose))
 
 
 def _read_pose(pose: Section) -> FloatArray:

@@ -5,7 +5,7 @@ OpenVINS' `estimator_config.yaml` leads to its chain by `relative_config_imucam`
 The projections and their numbers are those of Kalibr's wiki, "Supported models" and "YAML formats".
 The pose is `T_cn_cnm1` of cam1, which takes points of cam0 to cam1; where that is missing, the two
 cameras' `T_cam_imu` (points of the IMU to the camera; OpenVINS may write its inverse, `T_imu_cam`).
-A camera without `camera_model` is a pinhole, as Kalibr's offspring leave it out.
+A camera without `camera_model` is a pinhole, as other programs that write chains leave it out.
 Of a longer chain any two cameras make a rig.
 Translations are metres, pixel (0, 0) is the centre of a pixel, there is no skew. Written are cam0, cam1
 and its `T_cn_cnm1`.
@@ -20,14 +20,11 @@ from typing import Any
 
 import numpy as np
 
-from rectbench.calibrations.assembling import assembled, single
+from rectbench.calibrations.assembling import assembled, camera_of, inverse, pose_matrix, single
 from rectbench.calibrations.contract import Given, RigFormat
-from rectbench.calibrations.documents.faults import blaming, shown
-from rectbench.calibrations.documents.sections import Section
-from rectbench.calibrations.documents.sources import Source
+from rectbench.calibrations.documents import Section, Source, shown
 from rectbench.calibrations.formats.toolboxes.opencv_keys import MATRIX
 from rectbench.calibrations.layouts import layout_of
-from rectbench.calibrations.transforms import inverse, pose_matrix
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
 from rectbench.rigs.file_formats import Writing
@@ -66,7 +63,7 @@ LAYOUTS = {
 are no camera that it has."""
 
 
-OFFSPRING = {
+OTHERS_LAYOUTS = {
     ("pinhole", "rational_polynomial"): Layout("pinhole", FOCAL, (*RADTAN, "k3", "k4", "k5", "k6")),
     ("pinhole", "plumb_bob"): Layout("pinhole", FOCAL, (*RADTAN, "k3")),
 }
@@ -92,11 +89,11 @@ def _read(sources: Sequence[Source], given: Given) -> Rig:
     source = _chain(sources)
     chain = source.document
     names = _chosen(chain, given)
-    left = chain.section(names[0], "the first camera, the left one")
-    right = chain.section(names[1], "the second camera; a rig takes two")
-    left_camera, right_camera = _read_camera(left, given.size), _read_camera(right, given.size)
+    expected = ("the first camera, the left one", "the second camera; a rig takes two")
+    sections = [chain.section(name, what) for name, what in zip(names, expected, strict=True)]
+    left, right = (_read_camera(section, given.size) for section in sections)
     key, T = _read_pose(chain, *names)
-    return assembled(left_camera, right_camera, T, given, key, source.name)
+    return assembled(left, right, T, given, key, source.name)
 
 
 def _chain(sources: Sequence[Source]) -> Source:
@@ -143,7 +140,7 @@ def _from_imu(camera: Section) -> FloatArray:
 def _read_camera(section: Section, size: tuple[int, int] | None) -> Camera:
     expected = "pinhole, omni, ds or eucm"
     projection = section.text("camera_model", expected) if "camera_model" in section else "pinhole"
-    layouts = LAYOUTS | OFFSPRING
+    layouts = LAYOUTS | OTHERS_LAYOUTS
     known = [distortion for name, distortion in layouts if name == projection]
     if not known:
         raise section.fault("camera_model", expected)
@@ -151,17 +148,10 @@ def _read_camera(section: Section, size: tuple[int, int] | None) -> Camera:
     if distortion not in known:
         raise section.fault("distortion_model", f"{', '.join(known)} with {projection}")
     layout = layouts[projection, distortion]
-    params = _read_parameters(section, "intrinsics", layout.intrinsics)
+    params = section.named("intrinsics", layout.intrinsics)
     if layout.distortion:
-        params |= _read_parameters(section, "distortion_coeffs", layout.distortion)
-    image = section.size("resolution", size)
-    with blaming(section.at("").removesuffix(".")):
-        return Camera(layout.model, image, params)
-
-
-def _read_parameters(section: Section, key: str, names: tuple[str, ...]) -> dict[str, float]:
-    numbers = section.numbers(key, f"{len(names)} finite numbers ({' '.join(names)})", len(names))
-    return dict(zip(names, numbers, strict=True))
+        params |= section.named("distortion_coeffs", layout.distortion)
+    return camera_of(section.where, layout.model, section.size("resolution", size), params)
 
 
 def _texts(rig: Rig, name: str) -> dict[str, str]:

@@ -10,14 +10,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from rectbench.calibrations.assembling import chosen, rig_of_posed, single
+from rectbench.calibrations.assembling import camera_of, inverse, rig_of_list, single
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
-from rectbench.calibrations.documents.faults import blaming
-from rectbench.calibrations.documents.sections import Section
-from rectbench.calibrations.documents.sources import Source
+from rectbench.calibrations.documents import Section, Source
 from rectbench.calibrations.formats.odometry.kalibr import LAYOUTS, Layout
-from rectbench.calibrations.transforms import inverse
-from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig
 
@@ -28,10 +24,7 @@ DISTORTIONS = {"none": "none", "radial-tangential": "radtan", "equidistant": "eq
 
 def _read(sources: Sequence[Source], given: Given) -> Rig:
     source = single(sources)
-    cameras = _cameras(source)
-    names = chosen([f"cam{place}" for place in cameras.values], given, source.path)
-    posed = [_read_posed(cameras.section(name.removeprefix("cam"), "a camera"), given) for name in names]
-    return rig_of_posed(posed, given, source.name)
+    return rig_of_list(source, _cameras(source), _read_posed, given)
 
 
 def _cameras(source: Source) -> Section:
@@ -53,14 +46,12 @@ def _read_posed(entry: Section, given: Given) -> PosedCamera:
     if layout.distortion:
         params |= _numbers(section.section("distortion", "its parameters"), "parameters", layout.distortion)
     size = section.sides("image_width", "image_height", given.size)
-    where = entry.at("camera")
-    with blaming(where):
-        camera = Camera(layout.model, size, params)
+    camera = camera_of(entry.at("camera"), layout.model, size, params)
     if "T_C_B" in entry and "T_B_C" not in entry:
-        return PosedCamera(
-            where, camera, inverse(entry.rigid("T_C_B", "the pose from body to camera, metres"))
-        )
-    return PosedCamera(where, camera, entry.rigid("T_B_C", "the pose from camera to body, metres"))
+        T_body_camera = inverse(entry.rigid("T_C_B", "the pose from body to camera, metres"))
+    else:
+        T_body_camera = entry.rigid("T_B_C", "the pose from camera to body, metres")
+    return PosedCamera(entry.at("camera"), camera, T_body_camera)
 
 
 def _layout(section: Section) -> Layout:

@@ -9,13 +9,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from rectbench.calibrations.assembling import chosen, rig_of_posed, single
+from rectbench.calibrations.assembling import camera_of, rig_of_list, single
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
-from rectbench.calibrations.documents.faults import blaming
-from rectbench.calibrations.documents.sections import Section
-from rectbench.calibrations.documents.sources import Source
+from rectbench.calibrations.documents import Section, Source
 from rectbench.calibrations.formats.toolboxes.opencv import ORDERS
-from rectbench.cameras import Camera
 from rectbench.rigs.rig import Rig
 
 MODELS = {
@@ -27,28 +24,15 @@ MODELS = {
 
 def _read(sources: Sequence[Source], given: Given) -> Rig:
     source = single(sources)
-    cameras = source.document.section_of_list("cameras")
-    names = chosen([f"cam{place}" for place in cameras.values], given, source.path)
-    posed = [_read_posed(cameras.section(name.removeprefix("cam"), "a camera"), given) for name in names]
-    return rig_of_posed(posed, given, source.name)
+    return rig_of_list(source, source.document.section_of_list("cameras"), _read_posed, given)
 
 
 def _read_posed(section: Section, given: Given) -> PosedCamera:
-    kind = section.text("distortion_type", ", ".join(MODELS))
-    if kind not in MODELS:
-        raise section.fault("distortion_type", ", ".join(MODELS))
-    model, order = MODELS[kind]
-    focal = section.numbers("focal_length", "[fx, fy]", 2)
-    centre = section.numbers("principal_point", "[cx, cy]", 2)
-    distortion = section.numbers(
-        "distortion_coefficients", f"{len(order)} finite numbers ({' '.join(order)})", len(order)
-    )
-    names = ("fx", "fy", "cx", "cy", *order)
-    size = section.size("image_dimension", given.size)
-    where = section.at("").removesuffix(".")
-    with blaming(where):
-        camera = Camera(model, size, dict(zip(names, [*focal, *centre, *distortion], strict=True)))
-    return PosedCamera(where, camera, section.rigid("T_SC", "the pose from camera to IMU, metres"))
+    model, order = MODELS[section.choice("distortion_type", MODELS)]
+    params = section.named("focal_length", ("fx", "fy")) | section.named("principal_point", ("cx", "cy"))
+    params |= section.named("distortion_coefficients", order)
+    camera = camera_of(section.where, model, section.size("image_dimension", given.size), params)
+    return PosedCamera(section.where, camera, section.rigid("T_SC", "the pose from camera to IMU, metres"))
 
 
 def _recognises(source: Source) -> bool:

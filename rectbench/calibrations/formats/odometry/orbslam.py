@@ -5,23 +5,25 @@ and `Stereo.T_c1_c2` (older: `Tlr`), which takes points of the right camera to t
 Rectified images have Camera1 alone, and the baseline `Stereo.b`; in ORB-SLAM2's settings, Camera and
 `Camera.bf`, the baseline times fx. A `DepthMapFactor` marks the settings of an RGB-D camera, of no rig.
 ORB-SLAM2: `LEFT.K`, `LEFT.D`, `LEFT.R`, `LEFT.P` and `RIGHT.*`, as `cv2.stereoRectify` gives them; P[0, 3] of
-RIGHT is -fx' B, see `calibrations.devices.ros`. Four coefficients in LEFT.D are still the pinhole's.
+RIGHT is -fx' B, see `formats.devices.ros`. Four coefficients in LEFT.D are still the pinhole's.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
-
-from rectbench.calibrations.assembling import assembled, rig_of_posed, single
+from rectbench.calibrations.assembling import (
+    assembled,
+    camera_of,
+    inverse,
+    rig_of_posed,
+    side_by_side,
+    single,
+)
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
-from rectbench.calibrations.documents.faults import blaming
-from rectbench.calibrations.documents.sections import Section
-from rectbench.calibrations.documents.sources import Source
+from rectbench.calibrations.documents import Section, Source
 from rectbench.calibrations.formats.devices.ros import rectified_place
-from rectbench.calibrations.formats.toolboxes.opencv import PINHOLE_COUNTS, camera_matrix, lens_parameters
-from rectbench.calibrations.transforms import inverse, rigid
+from rectbench.calibrations.formats.toolboxes.opencv import opencv_camera
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig
@@ -42,8 +44,8 @@ def _read(sources: Sequence[Source], given: Given) -> Rig:
         return _read_calibrated(file, given, sources[0].name)
     if "Stereo.b" in file:
         left = _read_camera(file, "Camera1", given)
-        T = rigid(np.eye(3), [-file.number("Stereo.b", "metres"), 0.0, 0.0])
-        return assembled(left, left, T, given, file.at("Stereo.b"), sources[0].name)
+        baseline = file.number("Stereo.b", "metres")
+        return side_by_side(left, left, baseline, given, file.at("Stereo.b"), sources[0].name)
     if "LEFT.K" not in file and "RIGHT.K" not in file:
         return _read_side_by_side(file, given, sources[0].name)
     posed = [_read_rectified(file, side, given) for side in ("LEFT", "RIGHT")]
@@ -60,11 +62,9 @@ def _read_side_by_side(file: Section, given: Given, name: str) -> Rig:
     if params["fx"] <= 0:
         raise file.fault("Camera.fx", "pixels above 0")
     size = file.sides("Camera.width", "Camera.height", given.size)
-    with blaming(file.at("Camera.fx")):
-        camera = Camera("pinhole", size, params)
+    camera = camera_of(file.at("Camera.fx"), "pinhole", size, params)
     baseline = file.number("Camera.bf", "pixels times metres") / params["fx"]
-    T = rigid(np.eye(3), [-baseline, 0.0, 0.0])
-    return assembled(camera, camera, T, given, file.at("Camera.bf"), name)
+    return side_by_side(camera, camera, baseline, given, file.at("Camera.bf"), name)
 
 
 def _read_calibrated(file: Section, given: Given, name: str) -> Rig:
@@ -76,27 +76,21 @@ def _read_calibrated(file: Section, given: Given, name: str) -> Rig:
 
 
 def _read_camera(file: Section, camera: str, given: Given) -> Camera:
-    kind = file.text("Camera.type", " or ".join(MODELS))
-    if kind not in MODELS:
-        raise file.fault("Camera.type", " or ".join(MODELS))
-    model, distortion = MODELS[kind]
+    model, distortion = MODELS[file.choice("Camera.type", MODELS)]
     names = ["fx", "fy", "cx", "cy", *distortion]
     names += [name for name in OPTIONAL if model == "pinhole" and f"{camera}.{name}" in file]
     params = {name: file.number(f"{camera}.{name}", "a number") for name in names}
     size = file.sides("Camera.width", "Camera.height", given.size)
-    with blaming(file.at(f"{camera}.fx")):
-        return Camera(model, size, params)
+    return camera_of(file.at(f"{camera}.fx"), model, size, params)
 
 
 def _read_rectified(file: Section, side: str, given: Given) -> PosedCamera:
-    params = camera_matrix(file, f"{side}.K", "pinhole")
-    params |= lens_parameters(file, f"{side}.D", "pinhole", PINHOLE_COUNTS)
     size = file.sides(f"{side}.width", f"{side}.height", given.size)
+    camera = opencv_camera(file, f"{side}.K", f"{side}.D", "pinhole", size)
     T = rectified_place(file, f"{side}.R", f"{side}.P")
     if T is None:
         raise InvalidInput(f"{file.at(side)}.R or {side}.P is missing; expected cv2.stereoRectify's R and P")
-    with blaming(file.at(f"{side}.K")):
-        return PosedCamera(file.at(f"{side}.R"), Camera("pinhole", size, params), T)
+    return PosedCamera(file.at(f"{side}.R"), camera, T)
 
 
 def _recognises(source: Source) -> bool:

@@ -12,24 +12,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
-
-from rectbench.calibrations.assembling import assembled, rig_of_posed, single
+from rectbench.calibrations.assembling import camera_of, rig_of_posed, rigid, side_by_side, single
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
-from rectbench.calibrations.documents.faults import blaming
-from rectbench.calibrations.documents.sections import Section
-from rectbench.calibrations.documents.sources import Source
-from rectbench.calibrations.formats.toolboxes.opencv import (
-    CAMERA_MODELS,
-    PINHOLE_COUNTS,
-    camera_matrix,
-    lens_parameters,
-)
-from rectbench.calibrations.transforms import rigid
-from rectbench.cameras import Camera
+from rectbench.calibrations.documents import Section, Source
+from rectbench.calibrations.formats.toolboxes.opencv import opencv_camera
 from rectbench.errors import InvalidInput
-from rectbench.rigs.rig import Rig, checked_rotation
-from rectbench.types import FloatArray
+from rectbench.rigs.rig import Rig
 
 MODELS = {"perspective": "pinhole", "fisheye": "fisheye"}
 
@@ -57,28 +45,15 @@ def _rectified(file: Section, size: tuple[int, int], baseline: float, given: Giv
         raise InvalidInput(
             f"{file.at('model')} is not perspective without distortion; expected it, or a StereoRectifier"
         )
-    with blaming(file.at("fx")):
-        camera = Camera("pinhole", size, params)
-    return assembled(camera, camera, rigid(np.eye(3), [-baseline, 0.0, 0.0]), given, file.at("fx"), name)
+    camera = camera_of(file.at("fx"), "pinhole", size, params)
+    return side_by_side(camera, camera, baseline, given, file.at("fx"), name)
 
 
 def _read_posed(rectifier: Section, side: str, size: tuple[int, int], baseline: float) -> PosedCamera:
-    kind = rectifier.text("model", "perspective or fisheye") if "model" in rectifier else "perspective"
-    if kind not in MODELS:
-        raise rectifier.fault("model", "perspective or fisheye")
-    lens = MODELS[kind]
-    params = camera_matrix(rectifier, f"K_{side}", lens)
-    params |= lens_parameters(rectifier, f"D_{side}", lens, PINHOLE_COUNTS if lens == "pinhole" else (4,))
-    with blaming(rectifier.at(f"K_{side}")):
-        camera = Camera(CAMERA_MODELS[lens], size, params)
-    return PosedCamera(rectifier.at(f"R_{side}"), camera, rectified_pose(rectifier, f"R_{side}", baseline))
-
-
-def rectified_pose(section: Section, key: str, baseline: float) -> FloatArray:
-    """The pose from a camera to the rectified frame of the left one, `baseline` to its left."""
-    R = section.array(key, "a 3x3 rotation", (9,)).reshape(3, 3)
-    with blaming(section.at(key)):
-        return rigid(checked_rotation(R, "it"), [baseline, 0.0, 0.0])
+    lens = MODELS[rectifier.choice("model", MODELS, "perspective")]
+    camera = opencv_camera(rectifier, f"K_{side}", f"D_{side}", lens, size)
+    T_rect_camera = rigid(rectifier.rotation(f"R_{side}"), [baseline, 0.0, 0.0])
+    return PosedCamera(rectifier.at(f"R_{side}"), camera, T_rect_camera)
 
 
 def _recognises(source: Source) -> bool:

@@ -1,4 +1,4 @@
-"""The configuration of VINS-Fusion, VINS-Fisheye and their kin: camera files and body_T_cam0, body_T_cam1.
+"""The configuration of VINS-Fusion, VINS-Fisheye and the like: camera files and body_T_cam0, body_T_cam1.
 
 `body_T_cam0` takes points of camera 0 to the body (IMU), in metres, as the VINS-Fusion maintainers
 state it. `cam0_calib` and `cam1_calib` name the CamOdoCal files of the cameras, beside the configuration.
@@ -10,17 +10,16 @@ about the IMU are left to its user.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import cv2
 import numpy as np
 
-from rectbench.calibrations.assembling import placed, rig_of_posed
+from rectbench.calibrations.assembling import inverse, pose_matrix, rig_of_posed, single
 from rectbench.calibrations.contract import Given, RigFormat
-from rectbench.calibrations.documents.sources import Source
+from rectbench.calibrations.documents import Source
 from rectbench.calibrations.formats.toolboxes import camodocal
-from rectbench.calibrations.transforms import inverse, pose_matrix
-from rectbench.errors import InvalidInput
 from rectbench.rigs.file_formats import Writing
 from rectbench.rigs.rig import Rig
 
@@ -28,18 +27,14 @@ CAMERAS = ("cam0", "cam1")
 
 
 def _read(sources: Sequence[Source], given: Given) -> Rig:
-    configs = [source for source in sources if _recognises(source)]
-    if len(configs) > 1:
-        raise InvalidInput(
-            f"{configs[0].path}: is read together with {configs[1].path}; expected one of them"
-        )
-    config, file = configs[0], configs[0].document
+    config = single([source for source in sources if _recognises(source)])
+    file = config.document
     posed = []
     for name in CAMERAS:
         calibration = file.text(f"{name}_calib", "the name of the camera's file")
         source = _named(calibration, sources) or config.beside(calibration)
         T = file.rigid(f"body_T_{name}", "the pose from camera to body, metres")
-        posed.append(placed(camodocal.read_posed(source, given), T))
+        posed.append(replace(camodocal.read_posed(source, given), T_shared_camera=T))
     return rig_of_posed(posed, given, config.name)
 
 

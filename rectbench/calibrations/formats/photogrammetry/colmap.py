@@ -33,10 +33,9 @@ from typing import Any
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from rectbench.calibrations.assembling import camera_of, inverse, pose_matrix, rigid
 from rectbench.calibrations.contract import UNITS, Given, RigFormat
-from rectbench.calibrations.documents.faults import blaming, one_line, shown
-from rectbench.calibrations.documents.numbers import checked_size
-from rectbench.calibrations.documents.sources import Source
+from rectbench.calibrations.documents import Source, agreed_size, errors_at, one_line, shown
 from rectbench.calibrations.formats.photogrammetry.colmap_files import (
     CameraRecord,
     ImageRecord,
@@ -47,7 +46,6 @@ from rectbench.calibrations.formats.photogrammetry.colmap_files import (
     read_rigs,
 )
 from rectbench.calibrations.layouts import layout_of
-from rectbench.calibrations.transforms import inverse, pose_matrix, rigid
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput, UnknownName
 from rectbench.rigs.file_formats import Writing
@@ -97,7 +95,7 @@ QUATERNION_TOLERANCE = 1e-2
 
 
 @dataclass(frozen=True)
-class _Standing:
+class _PlacedCamera:
     """A camera of the model, where it stands, and what an error or the rig's source calls it."""
 
     where: str
@@ -123,14 +121,14 @@ def read_colmap(
     """
     cameras_file = Path(path)
     pair = _images_named(cameras_file, images) if images else _pair(cameras_file)
-    cameras = read_cameras(cameras_file, {standing.camera for standing in pair}, NUMBERED)
-    left, right = (_camera(cameras_file, cameras, standing, size) for standing in pair)
+    cameras = read_cameras(cameras_file, {placed.camera for placed in pair}, NUMBERED)
+    left, right = (_camera(cameras_file, cameras, placed, size) for placed in pair)
     T = pair[1].T_camera_common @ inverse(pair[0].T_camera_common)
     names = " and ".join(
-        f"{one_line(standing.name)} ({side})" for standing, side in zip(pair, ("left", "right"), strict=True)
+        f"{one_line(placed.name)} ({side})" for placed, side in zip(pair, ("left", "right"), strict=True)
     )
     scale = f"taken to be in {unit}" if unit else "arbitrary unless something fixed it"
-    with blaming(" and ".join(dict.fromkeys(standing.where for standing in pair))):
+    with errors_at(" and ".join(dict.fromkeys(placed.where for placed in pair))):
         return Rig(
             left,
             right,
@@ -141,7 +139,7 @@ def read_colmap(
         )
 
 
-def _pair(cameras_file: Path) -> tuple[_Standing, _Standing]:
+def _pair(cameras_file: Path) -> tuple[_PlacedCamera, _PlacedCamera]:
     """Two cameras of the rig file, where there is one with a rig of several, or the first two images."""
     rigs_file = _beside(cameras_file, "rigs")
     if rigs_file.is_file():
@@ -156,7 +154,7 @@ def _pair(cameras_file: Path) -> tuple[_Standing, _Standing]:
     return _of_image(first[0]), _of_image(first[1])
 
 
-def _images_named(cameras_file: Path, names: Sequence[str]) -> tuple[_Standing, _Standing]:
+def _images_named(cameras_file: Path, names: Sequence[str]) -> tuple[_PlacedCamera, _PlacedCamera]:
     images_file = _beside(cameras_file, "images")
     if len(names) != 2:
         raise InvalidInput(f"{images_file}: {len(names)} images are asked for; expected two, left and right")
@@ -184,7 +182,7 @@ def _ends_alike(one: str, other: str) -> bool:
 
 def _found(
     file: Path, name: str, exact: dict[str, ImageRecord], ending: dict[str, list[ImageRecord]]
-) -> _Standing:
+) -> _PlacedCamera:
     if name in exact:
         return _of_image(exact[name])
     if len(ending[name]) != 1:
@@ -193,13 +191,13 @@ def _found(
     return _of_image(ending[name][0])
 
 
-def _of_image(image: ImageRecord) -> _Standing:
-    return _Standing(image.where, f"image {image.name}", image.camera, _rigid(image.pose, image.where))
+def _of_image(image: ImageRecord) -> _PlacedCamera:
+    return _PlacedCamera(image.where, f"image {image.name}", image.camera, _rigid(image.pose, image.where))
 
 
-def _of_sensor(sensor: SensorRecord) -> _Standing:
+def _of_sensor(sensor: SensorRecord) -> _PlacedCamera:
     pose = _rigid(sensor.pose or (), sensor.where)
-    return _Standing(sensor.where, f"the rig's camera {sensor.camera}", sensor.camera, pose)
+    return _PlacedCamera(sensor.where, f"the rig's camera {sensor.camera}", sensor.camera, pose)
 
 
 def _rigid(pose: Pose, where: str) -> FloatArray:
@@ -213,12 +211,10 @@ def _rigid(pose: Pose, where: str) -> FloatArray:
     return rigid(Rotation.from_quat([x, y, z, w]).as_matrix(), t)
 
 
-def _camera(file: Path, cameras: dict[int, CameraRecord], standing: _Standing, size: Any) -> Camera:
-    if standing.camera not in cameras:
-        raise InvalidInput(
-            f"{standing.where}: its camera {standing.camera} is missing; expected it in {file}"
-        )
-    record = cameras[standing.camera]
+def _camera(file: Path, cameras: dict[int, CameraRecord], placed: _PlacedCamera, size: Any) -> Camera:
+    if placed.camera not in cameras:
+        raise InvalidInput(f"{placed.where}: its camera {placed.camera} is missing; expected it in {file}")
+    record = cameras[placed.camera]
     model, names = _model(record)
     if len(record.params) != len(names):
         raise InvalidInput(
@@ -229,15 +225,11 @@ def _camera(file: Path, cameras: dict[int, CameraRecord], standing: _Standing, s
         params["fx"] = params["fy"] = params.pop("f")
     params["cx"] -= 0.5
     params["cy"] -= 0.5
-    with blaming(record.where):
-        stated = checked_size(record.size)
-        if size is not None and checked_size(size) != stated:
-            raise InvalidInput(f"size is {stated}; expected {tuple(size)} as given beside the file")
-        return Camera(model, stated, params)
+    return camera_of(record.where, model, agreed_size(record.where, record.size, size), params)
 
 
 def _model(record: CameraRecord) -> tuple[str, tuple[str, ...]]:
-    with blaming(record.where):
+    with errors_at(record.where):
         if record.model not in MODELS:
             raise UnknownName("COLMAP camera model", one_line(record.model), MODELS)
         if not MODELS[record.model][0]:

@@ -15,8 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
 
-from rectbench.calibrations.documents.faults import shown
-from rectbench.calibrations.documents.numbers import finite_number
+from rectbench.calibrations.documents import finite_number, shown
 from rectbench.errors import InvalidInput
 
 MAX_RECORDS = 25_000
@@ -119,14 +118,20 @@ def _opened(path: Path) -> Iterator[BinaryIO]:
 class _Lines:
     """The lines of a text file that hold something, none of them longer than `MAX_LINE`."""
 
-    def __init__(self, path: Path, stream: BinaryIO) -> None:
-        self.path, self.stream, self.number = path, stream, 0
+    stream: BinaryIO
+
+    def __init__(self, path: Path) -> None:
+        self.path, self.number = path, 0
 
     @property
     def where(self) -> str:
         return f"{self.path}: line {self.number}"
 
     def __iter__(self) -> Iterator[str]:
+        with _opened(self.path) as self.stream:
+            yield from self._filled()
+
+    def _filled(self) -> Iterator[str]:
         while line := self.stream.readline(MAX_LINE):
             self.number += 1
             if self.number > 2 * MAX_RECORDS:
@@ -157,31 +162,28 @@ class _Lines:
 
 
 def _text_cameras(path: Path, wanted: Collection[int]) -> Iterator[tuple[int, CameraRecord]]:
-    with _opened(path) as stream:
-        lines = _Lines(path, stream)
-        for text in lines:
-            words = text.split()
-            if len(words) < 5 or not re.fullmatch(r"[A-Z][A-Z0-9_]*", words[1]):
-                raise InvalidInput(f"{lines.where}: is {shown(text)}; expected {CAMERA_FIELDS}")
-            number = _whole(words[0], lines.where, CAMERA_FIELDS)
-            if number not in wanted:
-                continue
+    lines = _Lines(path)
+    for text in lines:
+        words = text.split()
+        if len(words) < 5 or not re.fullmatch(r"[A-Z][A-Z0-9_]*", words[1]):
+            raise InvalidInput(f"{lines.where}: is {shown(text)}; expected {CAMERA_FIELDS}")
+        number = _whole(words[0], lines.where, CAMERA_FIELDS)
+        if number in wanted:
             width, height, *params = _numbers(words[2:], lines.where, CAMERA_FIELDS)
             where = f"{lines.where}: camera {number}"
             yield number, CameraRecord(where, words[1], (width, height), tuple(params))
 
 
 def _text_images(path: Path) -> Iterator[ImageRecord]:
-    with _opened(path) as stream:
-        lines = _Lines(path, stream)
-        for text in lines:
-            words = text.split(maxsplit=9)
-            if len(words) < 10:
-                raise InvalidInput(f"{lines.where}: is {shown(text)}; expected {IMAGE_FIELDS}")
-            pose = _numbers(words[1:8], lines.where, IMAGE_FIELDS)
-            camera = _whole(words[8], lines.where, IMAGE_FIELDS)
-            yield ImageRecord(lines.where, words[9], camera, pose)
-            lines.skip_points()
+    lines = _Lines(path)
+    for text in lines:
+        words = text.split(maxsplit=9)
+        if len(words) < 10:
+            raise InvalidInput(f"{lines.where}: is {shown(text)}; expected {IMAGE_FIELDS}")
+        pose = _numbers(words[1:8], lines.where, IMAGE_FIELDS)
+        camera = _whole(words[8], lines.where, IMAGE_FIELDS)
+        yield ImageRecord(lines.where, words[9], camera, pose)
+        lines.skip_points()
 
 
 def _is_image(words: list[str]) -> bool:
@@ -193,14 +195,13 @@ def _is_image(words: list[str]) -> bool:
 
 
 def _text_rigs(path: Path) -> Iterator[list[SensorRecord]]:
-    with _opened(path) as stream:
-        lines = _Lines(path, stream)
-        for text in lines:
-            _, count, *words = [*text.split(), "", ""]
-            sensors = _text_sensors(words[:-2], lines.where)
-            if len(sensors) != _whole(count, lines.where, RIG_FIELDS):
-                raise InvalidInput(f"{lines.where}: has {len(sensors)} sensors; expected {count}")
-            yield [sensor for kind, sensor in sensors if kind == "CAMERA"]
+    lines = _Lines(path)
+    for text in lines:
+        _, count, *words = [*text.split(), "", ""]
+        sensors = _text_sensors(words[:-2], lines.where)
+        if len(sensors) != _whole(count, lines.where, RIG_FIELDS):
+            raise InvalidInput(f"{lines.where}: has {len(sensors)} sensors; expected {count}")
+        yield [sensor for kind, sensor in sensors if kind == "CAMERA"]
 
 
 def _text_sensors(words: list[str], where: str) -> list[tuple[str, SensorRecord]]:
@@ -230,13 +231,10 @@ def _whole(word: str, where: str, expected: str) -> int:
 
 
 def _numbers(words: list[str], where: str, expected: str) -> tuple[float, ...]:
-    numbers = []
     for word in words:
-        number = finite_number(word)
-        if number is None:
+        if finite_number(word) is None:
             raise InvalidInput(f"{where}: {shown(word)} is no finite number; expected {expected}")
-        numbers.append(number)
-    return tuple(numbers)
+    return tuple(map(float, words))
 
 
 # Binary
@@ -245,9 +243,11 @@ def _numbers(words: list[str], where: str, expected: str) -> tuple[float, ...]:
 class _Binary:
     """Reads numbers off a stream; what the file does not hold is never allocated."""
 
-    def __init__(self, path: Path, stream: BinaryIO) -> None:
-        self.path, self.stream = path, stream
-        self.size = os.fstat(stream.fileno()).st_size
+    stream: BinaryIO
+    size: int
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
 
     def take(self, layout: str) -> tuple[float, ...]:
         """The numbers of a `struct` layout."""
@@ -255,8 +255,7 @@ class _Binary:
         content = self.stream.read(length)
         if len(content) < length:
             raise self._cut_short()
-        values: tuple[float, ...] = struct.unpack("<" + layout, content)
-        return values
+        return struct.unpack("<" + layout, content)
 
     def count(self) -> int:
         """How many records there are; of an absurd number the first ones are read before the file ends."""
@@ -283,10 +282,12 @@ class _Binary:
 
     def records(self) -> Iterator[int]:
         """As many steps as the file says it has records, up to `MAX_RECORDS`."""
-        count = self.count()
-        yield from range(min(count, MAX_RECORDS))
-        if count > MAX_RECORDS:
-            raise InvalidInput(f"{self.path}: holds {count} records; expected at most {MAX_RECORDS}")
+        with _opened(self.path) as self.stream:
+            self.size = os.fstat(self.stream.fileno()).st_size
+            count = self.count()
+            yield from range(min(count, MAX_RECORDS))
+            if count > MAX_RECORDS:
+                raise InvalidInput(f"{self.path}: holds {count} records; expected at most {MAX_RECORDS}")
 
     def _cut_short(self) -> InvalidInput:
         return InvalidInput(
@@ -297,42 +298,39 @@ class _Binary:
 def _binary_cameras(
     path: Path, wanted: Collection[int], models: Mapping[int, tuple[str, int]]
 ) -> Iterator[tuple[int, CameraRecord]]:
-    with _opened(path) as stream:
-        file = _Binary(path, stream)
-        for _ in file.records():
-            number, model, width, height = (int(n) for n in file.take("IiQQ"))
-            where = f"{path}: camera {number}"
-            if model not in models:
-                raise InvalidInput(f"{where}: has the model {model}; expected 0 to {len(models) - 1}")
-            name, count = models[model]
-            params = file.take(f"{count}d")
-            if number in wanted:
-                yield number, CameraRecord(where, name, (width, height), params)
+    file = _Binary(path)
+    for _ in file.records():
+        number, model, width, height = (int(n) for n in file.take("IiQQ"))
+        where = f"{path}: camera {number}"
+        if model not in models:
+            raise InvalidInput(f"{where}: has the model {model}; expected 0 to {len(models) - 1}")
+        name, count = models[model]
+        params = file.take(f"{count}d")
+        if number in wanted:
+            yield number, CameraRecord(where, name, (width, height), params)
 
 
 def _binary_images(path: Path) -> Iterator[ImageRecord]:
-    with _opened(path) as stream:
-        file = _Binary(path, stream)
-        for _ in file.records():
-            number, *pose, camera = file.take("I7dI")
-            where = f"{path}: image {number}"
-            yield ImageRecord(where, file.name(where), int(camera), tuple(pose))
-            file.skip(file.count() * BYTES_PER_POINT)
+    file = _Binary(path)
+    for _ in file.records():
+        number, *pose, camera = file.take("I7dI")
+        where = f"{path}: image {number}"
+        yield ImageRecord(where, file.name(where), int(camera), tuple(pose))
+        file.skip(file.count() * BYTES_PER_POINT)
 
 
 def _binary_rigs(path: Path) -> Iterator[list[SensorRecord]]:
-    with _opened(path) as stream:
-        file = _Binary(path, stream)
-        for _ in file.records():
-            number, count = file.take("II")
-            where = f"{path}: rig {number}"
-            if count > MAX_SENSORS:
-                raise InvalidInput(f"{where}: has {count} sensors; expected at most {MAX_SENSORS}")
-            cameras = []
-            for place in range(int(count)):
-                kind, sensor = file.take("iI")
-                posed = place == 0 or file.take("B")[0]
-                pose = IDENTITY if place == 0 else file.take("7d") if posed else None
-                if kind == SENSORS["CAMERA"]:
-                    cameras.append(SensorRecord(where, int(sensor), pose))
-            yield cameras
+    file = _Binary(path)
+    for _ in file.records():
+        number, count = file.take("II")
+        where = f"{path}: rig {number}"
+        if count > MAX_SENSORS:
+            raise InvalidInput(f"{where}: has {count} sensors; expected at most {MAX_SENSORS}")
+        cameras = []
+        for place in range(int(count)):
+            kind, sensor = file.take("iI")
+            posed = place == 0 or file.take("B")[0]
+            pose = IDENTITY if place == 0 else file.take("7d") if posed else None
+            if kind == SENSORS["CAMERA"]:
+                cameras.append(SensorRecord(where, int(sensor), pose))
+        yield cameras

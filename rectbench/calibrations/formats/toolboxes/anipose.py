@@ -12,20 +12,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from rectbench.calibrations.assembling import chosen, rig_of_posed, single
+from rectbench.calibrations.assembling import chosen, inverse, rig_of_posed, rigid, single
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
-from rectbench.calibrations.documents.faults import blaming
-from rectbench.calibrations.documents.sections import Section
-from rectbench.calibrations.documents.sources import Source
-from rectbench.calibrations.formats.toolboxes.opencv import (
-    CAMERA_MODELS,
-    PINHOLE_COUNTS,
-    camera_matrix,
-    lens_parameters,
-)
+from rectbench.calibrations.documents import Section, Source
+from rectbench.calibrations.formats.toolboxes.opencv import opencv_camera
 from rectbench.calibrations.pose_file import read_rotation
-from rectbench.calibrations.transforms import inverse, rigid
-from rectbench.cameras import Camera
 from rectbench.rigs.rig import Rig
 
 KEYS = {"matrix", "distortions", "translation"}
@@ -49,15 +40,11 @@ def _tables(values: Mapping[str, Any]) -> list[str]:
 
 def _read_posed(section: Section, given: Given) -> PosedCamera:
     lens = "fisheye" if str(section.values.get("fisheye", False)).lower() == "true" else "pinhole"
-    params = camera_matrix(section, "matrix", lens)
-    params |= lens_parameters(section, "distortions", lens, (4,) if lens == "fisheye" else PINHOLE_COUNTS)
     size = section.size("size", given.size)
-    where = section.at("").removesuffix(".")
-    with blaming(where):
-        camera = Camera(CAMERA_MODELS[lens], size, params)
+    camera = opencv_camera(section, "matrix", "distortions", lens, size, section.where)
     R = read_rotation(section, "rotation")
     t = section.array("translation", "three numbers in the board's unit", (3,))
-    return PosedCamera(where, camera, inverse(rigid(R, t)))
+    return PosedCamera(section.where, camera, inverse(rigid(R, t)))
 
 
 def _recognises(source: Source) -> bool:

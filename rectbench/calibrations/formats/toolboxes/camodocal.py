@@ -21,29 +21,26 @@ from typing import Any
 
 import cv2
 
+from rectbench.calibrations.assembling import camera_of, rigid
 from rectbench.calibrations.contract import CameraFormat, Given, PosedCamera
-from rectbench.calibrations.documents.faults import blaming
-from rectbench.calibrations.documents.sections import Section
-from rectbench.calibrations.documents.sources import Source
+from rectbench.calibrations.documents import Section, Source
 from rectbench.calibrations.formats.toolboxes.ocamcalib import stretched
 from rectbench.calibrations.layouts import layout_of
 from rectbench.calibrations.pose_file import pose_text
-from rectbench.calibrations.transforms import rigid
 from rectbench.cameras import Camera
 from rectbench.rigs.file_formats import Writing
-from rectbench.rigs.rig import Rig, checked_rotation
+from rectbench.rigs.rig import Rig
 from rectbench.types import FloatArray
 
 RADTAN = {name: name for name in ("k1", "k2", "p1", "p2")}
 PINHOLE = {name: name for name in ("fx", "fy", "cx", "cy")}
 RATIONAL = RADTAN | {name: name for name in ("k3", "k4", "k5", "k6")}
+AFFINE = {name: name for name in ("ac", "ad", "ae", "cx", "cy")}
 MEI = {"gamma1": "fx", "gamma2": "fy", "u0": "cx", "v0": "cy"}
 KANNALA_BRANDT = {"mu": "fx", "mv": "fy", "u0": "cx", "v0": "cy"}
 KANNALA_BRANDT_RADIAL = {"k2": "k1", "k3": "k2", "k4": "k3", "k5": "k4"}
 BODY = "body_T_cam0"
 EXTRINSIC = ("extrinsicRotation", "extrinsicTranslation")
-
-MODELS = ("PINHOLE", "PINHOLE_FULL", "MEI", "KANNALA_BRANDT", "SCARAMUZZA")
 
 DISTORTION, PROJECTION, MIRROR = "distortion_parameters", "projection_parameters", "mirror_parameters"
 WRITTEN: dict[str, tuple[str, dict[str, dict[str, str]]]] = {
@@ -54,8 +51,7 @@ WRITTEN: dict[str, tuple[str, dict[str, dict[str, str]]]] = {
 }
 """The models that are written, and the sections of their numbers by CamOdoCal's and our names."""
 
-Lens = tuple[str, dict[str, Any]]
-"""A projection model and its parameters."""
+MODELS = (*WRITTEN, "SCARAMUZZA")
 
 MAX_POLYNOMIAL = 20
 """Coefficients of an inverse polynomial that CamOdoCal writes."""
@@ -68,9 +64,9 @@ def read_posed(source: Source, given: Given) -> PosedCamera:
     if kind not in MODELS:
         raise file.fault("model_type", ", ".join(MODELS))
     size = file.sides("image_width", "image_height", given.size)
-    model, params = READERS[kind](file)
-    with blaming(source.path):
-        return PosedCamera(source.path, Camera(model, size, params), _pose(file))
+    model = "ocam" if kind == "SCARAMUZZA" else WRITTEN[kind][0]
+    params = _scaramuzza(file) if kind == "SCARAMUZZA" else _parameters(file, kind)
+    return PosedCamera(source.path, camera_of(source.path, model, size, params), _pose(file))
 
 
 def _pose(file: Section) -> FloatArray | None:
@@ -80,49 +76,27 @@ def _pose(file: Section) -> FloatArray | None:
     if not all(key in file for key in EXTRINSIC):
         return None
     R_key, t_key = EXTRINSIC
-    R = file.array(R_key, "a 3x3 rotation from camera to body", (9,)).reshape(3, 3)
-    t = file.array(t_key, "three metres", (3,))
-    with blaming(file.at(R_key)):
-        return rigid(checked_rotation(R, "it"), t)
+    R = file.rotation(R_key, "a 3x3 rotation from camera to body")
+    return rigid(R, file.array(t_key, "three metres", (3,)))
 
 
-def _pinhole(file: Section) -> Lens:
-    params = _numbers(file, "projection_parameters", PINHOLE)
-    return "pinhole", params | _numbers(file, "distortion_parameters", RADTAN)
+def _parameters(file: Section, kind: str) -> dict[str, Any]:
+    sections = WRITTEN[kind][1]
+    if kind == "KANNALA_BRANDT" and DISTORTION in file:
+        # CamOdoCal puts all eight under projection_parameters; converters from Kalibr split them.
+        sections = {PROJECTION: KANNALA_BRANDT, DISTORTION: KANNALA_BRANDT_RADIAL}
+    return {name: n for key, names in sections.items() for name, n in _numbers(file, key, names).items()}
 
 
-def _pinhole_full(file: Section) -> Lens:
-    params = _numbers(file, "projection_parameters", PINHOLE)
-    return "pinhole", params | _numbers(file, "distortion_parameters", RATIONAL)
-
-
-def _mei(file: Section) -> Lens:
-    params = _numbers(file, "mirror_parameters", {"xi": "xi"})
-    params |= _numbers(file, "projection_parameters", MEI)
-    return "unified", params | _numbers(file, "distortion_parameters", RADTAN)
-
-
-def _kannala_brandt(file: Section) -> Lens:
-    # CamOdoCal puts all eight under projection_parameters; converters from Kalibr split them.
-    params = _numbers(file, "projection_parameters", KANNALA_BRANDT)
-    radial = "distortion_parameters" if "distortion_parameters" in file else "projection_parameters"
-    return "kannala-brandt", params | _numbers(file, radial, KANNALA_BRANDT_RADIAL)
-
-
-def _scaramuzza(file: Section) -> Lens:
-    affine = _numbers(file, "affine_parameters", {name: name for name in ("ac", "ad", "ae", "cx", "cy")})
-    stretch = ((affine["ac"], affine["ad"]), (affine["ae"], 1.0))
-    params = stretched(
-        stretch,
+def _scaramuzza(file: Section) -> dict[str, Any]:
+    affine = _numbers(file, "affine_parameters", AFFINE)
+    return stretched(
+        ((affine["ac"], affine["ad"]), (affine["ae"], 1.0)),
         (affine["cx"], affine["cy"]),
         _polynomial(file, "poly_parameters"),
         _polynomial(file, "inv_poly_parameters") if "inv_poly_parameters" in file else (),
         file.at("affine_parameters"),
     )
-    return "ocam", params
-
-
-READERS = dict(zip(MODELS, (_pinhole, _pinhole_full, _mei, _kannala_brandt, _scaramuzza), strict=True))
 
 
 def _numbers(file: Section, key: str, names: Mapping[str, str]) -> dict[str, Any]:
@@ -153,8 +127,7 @@ def camera_text(camera: Camera, side: str, format: str) -> str:
         for theirs, ours in names.items():
             storage.write(theirs, equal.params[ours])
         storage.endWriteStruct()
-    text: str = storage.releaseAndGetString()
-    return text
+    return storage.releaseAndGetString()
 
 
 def _texts(rig: Rig, name: str) -> dict[str, str]:

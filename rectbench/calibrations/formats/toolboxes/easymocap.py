@@ -9,15 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from rectbench.calibrations.assembling import chosen, rig_of_posed
+from rectbench.calibrations.assembling import chosen, inverse, rig_of_posed, rigid
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
-from rectbench.calibrations.documents.faults import blaming
-from rectbench.calibrations.documents.sections import Section
-from rectbench.calibrations.documents.sources import Source
-from rectbench.calibrations.formats.toolboxes.opencv import PINHOLE_COUNTS, camera_matrix, lens_parameters
+from rectbench.calibrations.documents import Section, Source
+from rectbench.calibrations.formats.toolboxes.opencv import opencv_camera
 from rectbench.calibrations.pose_file import read_rotation
-from rectbench.calibrations.transforms import inverse, rigid
-from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig
 
@@ -59,12 +55,9 @@ def _names(source: Source) -> list[str]:
 
 
 def _read_posed(intrinsics: Section, extrinsics: Section, name: str, given: Given) -> PosedCamera:
-    params = camera_matrix(intrinsics, f"K_{name}", "pinhole")
     key = f"dist_{name}" if f"dist_{name}" in intrinsics else f"D_{name}"
-    params |= lens_parameters(intrinsics, key, "pinhole", PINHOLE_COUNTS)
     size = intrinsics.sides(f"W_{name}", f"H_{name}", given.size)
-    with blaming(intrinsics.at(f"K_{name}")):
-        camera = Camera("pinhole", size, params)
+    camera = opencv_camera(intrinsics, f"K_{name}", key, "pinhole", size)
     R = read_rotation(extrinsics, f"Rot_{name}" if f"Rot_{name}" in extrinsics else f"R_{name}")
     t = extrinsics.array(f"T_{name}", "three metres", (3,))
     return PosedCamera(extrinsics.at(f"T_{name}"), camera, inverse(rigid(R, t)))

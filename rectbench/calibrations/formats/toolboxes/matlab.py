@@ -21,17 +21,13 @@ from typing import Any
 import numpy as np
 
 from rectbench.calibrations import pose_file as pose
-from rectbench.calibrations.assembling import assembled, single
+from rectbench.calibrations.assembling import assembled, camera_of, rigid, single
 from rectbench.calibrations.contract import CameraFormat, Given, PosedCamera, RigFormat
-from rectbench.calibrations.documents.faults import blaming
-from rectbench.calibrations.documents.numbers import checked_size
-from rectbench.calibrations.documents.sections import Section
-from rectbench.calibrations.documents.sources import Source
+from rectbench.calibrations.documents import Section, Source, agreed_size
 from rectbench.calibrations.formats.toolboxes.ocamcalib import stretched
-from rectbench.calibrations.transforms import rigid
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
-from rectbench.rigs.rig import Rig, checked_rotation
+from rectbench.rigs.rig import Rig
 from rectbench.types import FloatArray
 
 PAIRS = (("CameraParameters1", "CameraParameters2"), ("left", "right"), ("camera1", "camera2"))
@@ -40,20 +36,14 @@ DISTORTION = (
     ("RadialDistortion", ("k1", "k2", "k3"), (2, 3)),
     ("TangentialDistortion", ("p1", "p2"), (2,)),
 )
-WORLD_UNITS = {
-    "m": "m",
-    "meters": "m",
-    "metres": "m",
-    "cm": "cm",
-    "centimeters": "cm",
-    "mm": "mm",
-    "millimeters": "mm",
-    "millimetres": "mm",
-    "in": "in",
-    "inches": "in",
-    "ft": "ft",
-    "feet": "ft",
+UNIT_WORDS = {
+    "m": ("m", "meters", "metres"),
+    "cm": ("cm", "centimeters"),
+    "mm": ("mm", "millimeters", "millimetres"),
+    "in": ("in", "inches"),
+    "ft": ("ft", "feet"),
 }
+WORLD_UNITS = {word: unit for unit, words in UNIT_WORDS.items() for word in words}
 POSE_AGREEMENT = 1e-6
 """How far PoseCamera2 and the older properties, where a file has both, may differ in an entry of R."""
 
@@ -79,7 +69,7 @@ def _read_pose(file: Section) -> tuple[str, FloatArray]:
         T = _pose(section, "R" if "R" in section else "Rotation", "Translation")
         if "RotationOfCamera2" in file:
             _check_agreement(file, T)
-        return section.at("").removesuffix("."), T
+        return section.where, T
     if "RotationOfCamera2" in file:
         T = _pose(file, "RotationOfCamera2", "TranslationOfCamera2")
         T[:3, :3] = T[:3, :3].T
@@ -92,10 +82,7 @@ def _read_pose(file: Section) -> tuple[str, FloatArray]:
 
 
 def _pose(section: Section, R_key: str, t_key: str) -> FloatArray:
-    R = section.matrix(R_key, "a 3x3 rotation", 3, 3)
-    t = section.array(t_key, "a translation", (3,))
-    with blaming(section.at(R_key)):
-        return rigid(checked_rotation(R, "it"), t)
+    return rigid(section.rotation(R_key), section.array(t_key, "a translation", (3,)))
 
 
 def _check_agreement(file: Section, T: FloatArray) -> None:
@@ -116,21 +103,14 @@ def _read_camera(section: Section, given: Given) -> Camera:
     is_fisheye = "MappingCoefficients" in lens
     model, params = ("ocam", _fisheye(lens)) if is_fisheye else ("pinhole", _pinhole(lens, section))
     size = _read_size(lens if "ImageSize" in lens else section, given)
-    with blaming(lens.at("").removesuffix(".")):
-        return Camera(model, size, params)
+    return camera_of(lens.where, model, size, params)
 
 
 def _read_size(section: Section, given: Given) -> tuple[int, int]:
     if "ImageSize" not in section or section.values["ImageSize"] in ([], None):
         return section.sides("ImageSize", "", given.size)
     rows, columns = section.numbers("ImageSize", "[rows, columns]", 2)
-    with blaming(section.at("ImageSize")):
-        size = checked_size((columns, rows))
-    if given.size not in (None, size):
-        raise InvalidInput(
-            f"{section.at('ImageSize')}: size is {size}; expected {given.size} as given beside it"
-        )
-    return size
+    return agreed_size(section.at("ImageSize"), (columns, rows), given.size)
 
 
 def _fisheye(lens: Section) -> dict[str, Any]:

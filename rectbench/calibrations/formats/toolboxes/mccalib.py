@@ -12,16 +12,8 @@ from collections.abc import Sequence
 
 from rectbench.calibrations.assembling import chosen, rig_of_posed, single
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
-from rectbench.calibrations.documents.faults import blaming
-from rectbench.calibrations.documents.sections import Section
-from rectbench.calibrations.documents.sources import Source
-from rectbench.calibrations.formats.toolboxes.opencv import (
-    CAMERA_MODELS,
-    PINHOLE_COUNTS,
-    camera_matrix,
-    lens_parameters,
-)
-from rectbench.cameras import Camera
+from rectbench.calibrations.documents import Section, Source
+from rectbench.calibrations.formats.toolboxes.opencv import opencv_camera
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig
 
@@ -46,15 +38,10 @@ def _read_posed(section: Section, given: Given) -> PosedCamera:
     if kind not in LENSES:
         raise section.fault("distortion_type", "0 (perspective) or 1 (fisheye)")
     lens = LENSES[int(kind)]
-    params = camera_matrix(section, "camera_matrix", lens)
-    params |= lens_parameters(
-        section, "distortion_vector", lens, (4,) if lens == "fisheye" else PINHOLE_COUNTS
-    )
     size = section.sides("img_width", "img_height", given.size)
-    where = section.at("").removesuffix(".")
-    with blaming(where):
-        camera = Camera(CAMERA_MODELS[lens], size, params)
-    return PosedCamera(where, camera, section.rigid("camera_pose_matrix", "the pose from camera to group"))
+    camera = opencv_camera(section, "camera_matrix", "distortion_vector", lens, size, section.where)
+    T_group_camera = section.rigid("camera_pose_matrix", "the pose from camera to group")
+    return PosedCamera(section.where, camera, T_group_camera)
 
 
 FORMAT = RigFormat(

@@ -22,12 +22,11 @@ from typing import Any
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from rectbench.calibrations.assembling import camera_of, inverse, pose_matrix, rigid
 from rectbench.calibrations.contract import CameraFormat, Given, PosedCamera
-from rectbench.calibrations.documents.faults import blaming, shown
-from rectbench.calibrations.documents.sections import Section
-from rectbench.calibrations.documents.sources import MAX_BYTES, Source, read_bytes
+from rectbench.calibrations.documents import Section, Source, errors_at, shown
+from rectbench.calibrations.documents.sources import MAX_BYTES, read_bytes
 from rectbench.calibrations.layouts import layout_of
-from rectbench.calibrations.transforms import inverse, pose_matrix, rigid
 from rectbench.cameras import Camera
 from rectbench.cameras.brown import COEFFICIENTS
 from rectbench.errors import InvalidInput
@@ -82,10 +81,9 @@ def read_posed(source: Source, given: Given) -> PosedCamera:
     file = Section(source.path, "", parse(_text(source), source.path))
     key = next((key for key in LENS_KEYS if key in file), LENS_KEYS[0])
     model, names = _model(file, key)
-    numbers = file.numbers("intrinsics", f"{len(names)} finite numbers ({' '.join(names)})", len(names))
+    params = file.named("intrinsics", names)
     size = file.size("imagersize", given.size)
-    with blaming(f"{source.path}: intrinsics"):
-        camera = Camera(model, size, dict(zip(names, numbers, strict=True)))
+    camera = camera_of(f"{source.path}: intrinsics", model, size, params)
     return PosedCamera(source.path, camera, _pose(file))
 
 
@@ -106,7 +104,7 @@ def _pose(file: Section) -> FloatArray | None:
     if key is None:
         return None
     rt = file.numbers(key, "a rotation vector and a translation, six finite numbers", 6)
-    with blaming(file.at(key)):
+    with errors_at(file.at(key)):
         R = checked_rotation(Rotation.from_rotvec(rt[:3]).as_matrix(), "its rotation")
     return inverse(rigid(R, rt[3:]))
 

@@ -18,10 +18,9 @@ from typing import Any
 import numpy as np
 from numpy.polynomial import Polynomial
 
+from rectbench.calibrations.assembling import camera_of
 from rectbench.calibrations.contract import CameraFormat, Given, PosedCamera
-from rectbench.calibrations.documents.faults import blaming, shown
-from rectbench.calibrations.documents.numbers import checked_size, finite_number
-from rectbench.calibrations.documents.sources import Source
+from rectbench.calibrations.documents import Source, agreed_size, errors_at, finite_number, shown
 from rectbench.calibrations.layouts import layout_of
 from rectbench.calibrations.pose_file import pose_text
 from rectbench.cameras import Camera
@@ -62,7 +61,7 @@ def stretched(
     (a, b), (c, d) = stretch
     if not (a > 0 and abs(d - 1) < 1e-6):
         raise InvalidInput(f"{where} stretches by {a:g} and {d:g}; expected a number above 0 and 1")
-    with blaming(where):
+    with errors_at(where):
         return {
             "cx": centre[0],
             "cy": centre[1],
@@ -79,15 +78,10 @@ def read_posed(source: Source, given: Given) -> PosedCamera:
     poly, inverse_poly, centre, affine, sides = _blocks(source)
     row, column = centre
     c, d, e = affine
-    height, width = sides
-    with blaming(f"{source.path}: {BLOCKS[4]}"):
-        size = checked_size((width, height))
-    if given.size not in (None, size):
-        raise InvalidInput(f"{source.path}: size is {size}; expected {given.size} as given beside the file")
+    size = agreed_size(f"{source.path}: {BLOCKS[4]}", sides[::-1], given.size)
     # The direct polynomial is the calibrated one; the other is a fit to it.
     params = {"cx": column, "cy": row, "c": c, "d": d, "e": e, "poly": poly, "inverse_poly": inverse_poly}
-    with blaming(source.path):
-        return PosedCamera(source.path, Camera("ocam", size, params))
+    return PosedCamera(source.path, camera_of(source.path, "ocam", size, params))
 
 
 def _blocks(source: Source) -> list[list[float]]:

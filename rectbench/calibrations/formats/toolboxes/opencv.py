@@ -35,12 +35,9 @@ from typing import Any
 import cv2
 import numpy as np
 
-from rectbench.calibrations.assembling import assembled
+from rectbench.calibrations.assembling import assembled, camera_of, rigid
 from rectbench.calibrations.contract import Given, RigFormat
-from rectbench.calibrations.documents.faults import blaming, shown
-from rectbench.calibrations.documents.numbers import checked_size
-from rectbench.calibrations.documents.sections import Section
-from rectbench.calibrations.documents.sources import Source
+from rectbench.calibrations.documents import Section, Source, agreed_size, shown
 from rectbench.calibrations.formats.toolboxes.opencv_keys import (
     DISTORTION,
     FLAGS,
@@ -61,7 +58,6 @@ from rectbench.calibrations.formats.toolboxes.opencv_keys import (
     parts_of,
 )
 from rectbench.calibrations.layouts import layout_of
-from rectbench.calibrations.transforms import rigid
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
 from rectbench.rigs.file_formats import Writing
@@ -86,23 +82,19 @@ SUFFIXES = (".yml", ".yaml", ".xml", ".json")
 PINHOLE_COUNTS = (4, 5, 8, 12, 14)
 """Lengths of OpenCV's distortion vector; the last two of 14 tilt the sensor."""
 
+COUNTS = {"pinhole": PINHOLE_COUNTS, "fisheye": (4,), "omnidir": (4,)}
+
 LARGEST_TANGENTIAL = 0.02
 """Of p1 and p2 of a pinhole; what is larger, third or fourth of four, is rather a fisheye's k3 or k4."""
 
-LENSES = {
-    "pinhole": "pinhole",
-    "perspective": "pinhole",
-    "radtan": "pinhole",
-    "plumb_bob": "pinhole",
-    "rational_polynomial": "pinhole",
-    "fisheye": "fisheye",
-    "equidistant": "fisheye",
-    "kannala-brandt": "fisheye",
-    "kannala_brandt": "fisheye",
-    "omnidir": "omnidir",
-    "omni": "omnidir",
-    "mei": "omnidir",
+WORDS = {
+    "pinhole": ("pinhole", "perspective", "radtan", "plumb_bob", "rational_polynomial"),
+    "fisheye": ("fisheye", "equidistant", "kannala-brandt", "kannala_brandt"),
+    "omnidir": ("omnidir", "omni", "mei"),
 }
+"""What files call the lenses."""
+
+LENSES = {word: lens for lens, words in WORDS.items() for word in words}
 
 
 def camera_matrix(file: Section, key: str, lens: str) -> dict[str, float]:
@@ -137,6 +129,21 @@ def lens_parameters(file: Section, key: str, lens: str, counts: Collection[int])
     return dict(zip(order, distortion, strict=False))
 
 
+def opencv_camera(
+    file: Section,
+    matrix: str,
+    distortion: str,
+    lens: str,
+    size: tuple[int, int],
+    where: str | None = None,
+    counts: Collection[int] | None = None,
+) -> Camera:
+    """The camera of OpenCV's matrix and distortion under these keys; `counts` are the latter's lengths."""
+    params = camera_matrix(file, matrix, lens)
+    params |= lens_parameters(file, distortion, lens, counts or COUNTS[lens])
+    return camera_of(where or file.at(matrix), CAMERA_MODELS[lens], size, params)
+
+
 def _read(sources: Sequence[Source], given: Given) -> Rig:
     files = Files([part for source in sources for part in parts_of(source.document)])
     left, right = (_read_camera(files, number, given.size) for number in (1, 2))
@@ -162,7 +169,7 @@ def _read_camera(files: Files, number: int, size: tuple[int, int] | None) -> Cam
     stated = _read_lens(files, number)
     lens = stated or ("pinhole" if xi is None else "omnidir")
     params = camera_matrix(document, key, lens)
-    counts = PINHOLE_COUNTS if lens == "pinhole" else (4,)
+    counts = COUNTS[lens]
     source, name = files.first(DISTORTION, number, f"{counts[0]} distortion coefficients ({lens})")
     coefficients = lens_parameters(source, name, lens, counts)
     if (stated, lens, len(coefficients)) == (None, "pinhole", 4):
@@ -172,8 +179,7 @@ def _read_camera(files: Files, number: int, size: tuple[int, int] | None) -> Cam
         holder, xi_key = xi or files.first(XI, number, "Mei's xi, a number")
         params["xi"] = float(holder.array(xi_key, "Mei's xi, a number", (1,))[0])
     image = _read_size(files, number, size)
-    with blaming(f"{document.at(key)}, {name}"):
-        return Camera(CAMERA_MODELS[lens], image, params)
+    return camera_of(f"{document.at(key)}, {name}", CAMERA_MODELS[lens], image, params)
 
 
 def _check_pinhole(where: str, coefficients: dict[str, float]) -> None:
@@ -204,17 +210,14 @@ def _read_lens(files: Files, number: int) -> str | None:
 def _read_size(files: Files, number: int, given: tuple[int, int] | None) -> tuple[int, int]:
     """The image size of that camera, or else of any; `given` where no file has one."""
     for document, key in (*files.of_camera(SIZE, number), *files.holders(SIZE)):
-        with blaming(document.at(key)):
-            width, height = checked_size(document.array(key, "[width, height]", (2,)))
-        stated = Section(document.file, "", {key: width, f"{key} (height)": height})
-        return stated.sides(key, f"{key} (height)", given)
+        return agreed_size(document.at(key), document.array(key, "[width, height]", (2,)), given)
     for document, key in (*files.of_camera(SIDES, number), *files.holders(SIDES)):
         return document.sides(key.replace(*SIDES[::-1]), key.replace(*SIDES), given)
     if given is None:
         raise InvalidInput(
             f"{files}: image_width is missing; expected it and image_height, or `size=` beside the file"
         )
-    return checked_size(given)
+    return given
 
 
 def _recognises(source: Source) -> bool:

@@ -1,4 +1,4 @@
-"""How files of OpenCV's calibrations call what they hold, and where in several files it is looked for."""
+"""The keys that files of OpenCV calibrations use, and the search for them over several files."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass
 from itertools import islice
 
-from rectbench.calibrations.documents.sections import Section
+from rectbench.calibrations.documents import Section
 from rectbench.errors import InvalidInput
 from rectbench.types import FloatArray
 
