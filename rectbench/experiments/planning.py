@@ -13,13 +13,14 @@ from rectbench.errors import InvalidInput
 from rectbench.experiments.naming import plugins_named, require_known
 from rectbench.experiments.pair_sources import PairName, PairSource, StatedPart
 from rectbench.experiments.spec import REPORTS, Report
-from rectbench.experiments.tasks import Cell, CellTask
+from rectbench.experiments.tasks import CellTask
 from rectbench.metrics.scoring import metrics_of, needs_of
 from rectbench.pairs.finding.photographs import Photographs
 from rectbench.pairs.spec import ESTIMATED, PairSpec
 from rectbench.plugins.figure import FIGURES, usual_figures
 from rectbench.plugins.fitting import checked_options
 from rectbench.plugins.rectifier import METHODS, Rectifier
+from rectbench.plugins.result import Cell
 from rectbench.registry import Plugin, registry
 from rectbench.rigs.poses import POSES
 from rectbench.store.keys import canonical_json

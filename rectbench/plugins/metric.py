@@ -175,6 +175,9 @@ class Known(Protocol):
         Raises PoseNotFound where photographs tell no pose.
         """
 
+    def shown_matches(self) -> Matches:
+        """Correspondences that pictures choose from, the most certain ones that are known."""
+
     def pose_seconds(self) -> float:
         """Seconds from the two images, in memory, to their pose, warm."""
 

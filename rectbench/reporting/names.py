@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from rectbench.plugins.figure import Part
+from rectbench.plugins.result import Part
 
 
 def slug(*parts: str) -> str:

@@ -10,7 +10,7 @@ import pytest
 
 import rectbench as rb
 from rectbench.errors import Unsupported
-from rectbench.metrics.catalogue import known
+from rectbench.plugins.catalogue import known
 from rectbench.plugins.figure import FigureData, Sources
 from rectbench.reporting.charts.bars import pair_chart
 from rectbench.reporting.charts.energy import Energy, shape_of

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from itertools import product
 
-from rectbench.plugins.figure import Drawing, Figure, FigureData, Part, Result
+from rectbench.plugins.figure import Drawing, Figure, FigureData
+from rectbench.plugins.result import Part, Result
 from rectbench.reporting.charts.grouped_bars import Bar, BarChart, bar_drawing, bar_of
 from rectbench.reporting.tables.labels import pair_labels
 

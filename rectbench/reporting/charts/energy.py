@@ -19,7 +19,8 @@ from rectbench.metrics.energy import (
     energy_slice,
     has_cubics,
 )
-from rectbench.plugins.figure import FigureData, Result, Sources
+from rectbench.plugins.figure import FigureData, Sources
+from rectbench.plugins.result import Result
 from rectbench.reporting.pictures.pair_picture import PairPicture
 from rectbench.reporting.pictures.panels import attempted
 from rectbench.reporting.style import INK, PAGE_INCHES

@@ -9,7 +9,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from rectbench.plugins.figure import Drawing, FigureData, Look, Result
+from rectbench.plugins.figure import Drawing, FigureData, Look
+from rectbench.plugins.result import Result
 from rectbench.reporting.style import COLUMN_INCHES, FAINT, INK, PAGE_INCHES, PAPER, plain_log_ticks
 
 if TYPE_CHECKING:

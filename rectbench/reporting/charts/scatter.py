@@ -7,8 +7,9 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rectbench.metrics.catalogue import column
-from rectbench.plugins.figure import Drawing, Figure, FigureData, Look, Part
+from rectbench.plugins.catalogue import column
+from rectbench.plugins.figure import Drawing, Figure, FigureData, Look
+from rectbench.plugins.result import Part
 from rectbench.reporting.style import COLUMN_INCHES, FAINT, INK, PAGE_INCHES, PAPER, plain_log_ticks
 
 if TYPE_CHECKING:

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rectbench.cameras import Camera
-from rectbench.plugins.figure import FigureData, Result, Sources
+from rectbench.plugins.figure import FigureData, Sources
+from rectbench.plugins.result import Result
 from rectbench.reporting.pictures.pair_picture import PairPicture
 from rectbench.reporting.pictures.panels import attempted, fit_into_box, panel_grid, write_head, write_message
 from rectbench.reporting.style import FAINT, INK, PAGE_INCHES

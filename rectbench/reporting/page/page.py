@@ -102,7 +102,7 @@ def render_page(run: Run, tables: Sequence[Table], drawn: Sequence[Drawn]) -> st
         cells=len(run.results),
         failed=len(run.failures),
         scenes=run.scenes,
-        scenes_called=f"{run.pair_source.scene_word}s",
+        scenes_called=f"{run.record.spec.pair_source.scene_word}s",
         rigs=run.rigs,
         methods=_methods(run),
         poses=run.poses,

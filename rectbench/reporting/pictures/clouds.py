@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rectbench.images.stereo_pair import StereoPair
-from rectbench.metrics.catalogue import column
-from rectbench.plugins.figure import FigureData, Result, Sources
+from rectbench.plugins.catalogue import column
+from rectbench.plugins.figure import FigureData, Sources
+from rectbench.plugins.result import Result
 from rectbench.rendering.truth import Truth
 from rectbench.reporting.pictures.pair_picture import PairPicture
 from rectbench.reporting.pictures.panels import attempted, fit_into_box, panel_grid, write_head, write_message

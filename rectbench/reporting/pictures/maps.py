@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rectbench.cameras import Camera
-from rectbench.plugins.figure import FigureData, Result, Side, Sources
+from rectbench.plugins.figure import FigureData, Side, Sources
+from rectbench.plugins.result import Result
 from rectbench.reporting.pictures.pair_picture import PairPicture
 from rectbench.reporting.pictures.panels import attempted, fit_into_box, panel_grid, write_head, write_message
 from rectbench.reporting.style import LOST, PAGE_INCHES, plain_log_ticks

@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rectbench.images.stereo_pair import StereoPair
-from rectbench.metrics.catalogue import column, known
-from rectbench.plugins.figure import FigureData, Result, Sources
+from rectbench.plugins.catalogue import column, known
+from rectbench.plugins.figure import FigureData, Sources
+from rectbench.plugins.result import Result
 from rectbench.reporting.pictures.pair_picture import PairPicture
 from rectbench.reporting.pictures.panels import attempted, fit_into_box, panel_grid, write_head, write_message
 from rectbench.reporting.style import PAGE_INCHES

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, TypeVar
 
 from rectbench.errors import RectbenchError
-from rectbench.plugins.figure import Result
+from rectbench.plugins.result import Result
 from rectbench.reporting.style import INK, PAGE_INCHES
 
 if TYPE_CHECKING:

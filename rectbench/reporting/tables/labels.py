@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rectbench.plugins.figure import Part
+from rectbench.plugins.result import Part
 
 Place = tuple[str, str, str]
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rectbench.plugins.metric import Column
+from rectbench.plugins.result import Result
 from rectbench.reporting.asked import methods_part, wanted_figures
 from rectbench.reporting.charts.starts import SAME_MINIMUM, Starts, start_study, study_method
 from rectbench.reporting.names import named, slug
@@ -29,7 +30,6 @@ from rectbench.reporting.tables.tabulation import (
     titled,
     topic_columns,
 )
-from rectbench.runs.rows import Row
 from rectbench.runs.run import Run
 from rectbench.types import FloatArray
 
@@ -88,10 +88,10 @@ class _Wording:
 
 
 _WORDINGS = {
-    "Row error": _Wording(
+    "Result error": _Wording(
         "rows",
         "row-error",
-        "Row error",
+        "Result error",
         "Of SIFT matches within 3 px of the pose's epipolar planes, and of true correspondences; {pose} "
         "pose, averages over seeds.",
         "Of the corners of a calibration board, the measure to trust, where both images show one; and of "
@@ -138,7 +138,7 @@ def pairwise_tables(run: Run, topic: str) -> Iterator[Table]:
         )
 
 
-def _by_pair(run: Run, pose: str) -> dict[str, tuple[Row, ...]]:
+def _by_pair(run: Run, pose: str) -> dict[str, tuple[Result, ...]]:
     results, labels = run.select(pose=pose), pair_labels(run)
     by_pair = {one_line(label): run.select(results, place=place) for place, label in labels.items()}
     return {"all pairs": results, **by_pair} if len(labels) > 1 else by_pair
@@ -170,7 +170,7 @@ def pose_table(run: Run) -> Table:
     )
 
 
-def _poses(results: Sequence[Row], keys: Sequence[str]) -> list[list[float]]:
+def _poses(results: Sequence[Result], keys: Sequence[str]) -> list[list[float]]:
     """The columns of each estimate, once."""
     estimates = {(r.pair, r.pose): r for r in results if r.ok and keys[0] in r.metrics}
     return [[r.metrics.get(key, math.nan) for key in keys] for r in estimates.values()]
@@ -212,7 +212,7 @@ def timing_table(run: Run) -> Table:
     )
 
 
-def _timing_row(results: Sequence[Row], method: str, stages: Iterable[str]) -> tuple[Entry, ...]:
+def _timing_row(results: Sequence[Result], method: str, stages: Iterable[str]) -> tuple[Entry, ...]:
     found = [[r.metrics[key] for r in results if key in r.metrics] for key in stages]
     return words(method), *(_seconds(sum(values) / len(values) if values else None) for values in found)
 

@@ -12,12 +12,12 @@ from itertools import product
 from typing import Any
 
 from rectbench.plugins.metric import Column
+from rectbench.plugins.result import Result
 from rectbench.reporting.asked import methods_part, part_title
 from rectbench.reporting.names import named
 from rectbench.reporting.tables.numbers import MISSING, three_digits
 from rectbench.reporting.tables.summaries import Summary, ranked, summarise
 from rectbench.reporting.tables.table import Entry, Heading, Section, Table, number, with_best
-from rectbench.runs.rows import Row
 from rectbench.runs.run import Run
 
 OK_HEADING = Heading("ok", "ok", meaning="Cells measured of cells planned.")
@@ -108,7 +108,7 @@ def topic_columns(run: Run, topic: str) -> list[Column]:
     return measured(run, run.catalogue.shown("topic", "page", "summary", topic=topic))
 
 
-def methods_table(run: Run, columns: Sequence[Column], sections: Mapping[str, Sequence[Row]]) -> Table:
+def methods_table(run: Run, columns: Sequence[Column], sections: Mapping[str, Sequence[Result]]) -> Table:
     """Averages of the columns, a row a method, in a section of results each."""
     failing = any(not r.ok for results in sections.values() for r in results)
     return Table(
@@ -131,14 +131,14 @@ def methods_table(run: Run, columns: Sequence[Column], sections: Mapping[str, Se
     )
 
 
-def _summaries(run: Run, results: Sequence[Row], columns: Sequence[Column]) -> list[Summary]:
+def _summaries(run: Run, results: Sequence[Result], columns: Sequence[Column]) -> list[Summary]:
     """Of the methods that any of the results is of, in the run's order."""
     mine = {method: [r for r in results if r.method == method] for method in run.methods}
     return [summarise(method, own, columns) for method, own in mine.items() if own]
 
 
 def _method_rows(
-    summaries: Sequence[Summary], columns: Sequence[Column], results: Sequence[Row], failing: bool
+    summaries: Sequence[Summary], columns: Sequence[Column], results: Sequence[Result], failing: bool
 ) -> tuple[tuple[Entry, ...], ...]:
     fields = [_averaged_field(summaries, column) for column in columns]
     return tuple(
@@ -168,7 +168,7 @@ def pair_tables(run: Run) -> list[Table]:
     return tables
 
 
-def _pair_table(run: Run, scene: str, rig: str, results: Sequence[Row]) -> Table:
+def _pair_table(run: Run, scene: str, rig: str, results: Sequence[Result]) -> Table:
     methods = [m for m in run.methods if any(r.method == m for r in results)]
     sections = []
     for motion, pose, seed in dict.fromkeys((r.motion, r.pose, r.seed) for r in results):
@@ -196,7 +196,7 @@ def _pair_table(run: Run, scene: str, rig: str, results: Sequence[Row]) -> Table
     )
 
 
-def _metric_row(shown_as: Column, present: Sequence[Row | None]) -> tuple[Entry, ...]:
+def _metric_row(shown_as: Column, present: Sequence[Result | None]) -> tuple[Entry, ...]:
     entries = [
         number(r.metrics.get(shown_as.key), shown_as) if r is not None and r.ok else Entry(MISSING)
         for r in present
@@ -205,7 +205,7 @@ def _metric_row(shown_as: Column, present: Sequence[Row | None]) -> tuple[Entry,
     return head, *with_best(entries, shown_as, [True] * len(entries))
 
 
-def _note_row(name: str, present: Sequence[Row | None]) -> tuple[Entry, ...]:
+def _note_row(name: str, present: Sequence[Result | None]) -> tuple[Entry, ...]:
     """What methods say of their own answers: focal lengths, energies, warnings."""
     values = [None if r is None else r.notes.get(name) for r in present]
     return Entry(f"note: {name.replace('_', ' ')}", f"note:{name}"), *map(_note_entry, values)
@@ -217,7 +217,7 @@ def _note_entry(value: Any) -> Entry:
     return Entry(MISSING) if value is None else Entry(str(value), str(value))
 
 
-def _status_entry(result: Row | None) -> Entry:
+def _status_entry(result: Result | None) -> Entry:
     if result is None:
         return Entry(MISSING)
     return Entry(result.status, result.status, failed=not result.ok)
@@ -260,7 +260,7 @@ def _ok_entry(summary: Summary) -> Entry:
     return Entry(text, text, failed=not summary.complete)
 
 
-def _not_ok_entry(summary: Summary, results: Sequence[Row]) -> Entry:
+def _not_ok_entry(summary: Summary, results: Sequence[Result]) -> Entry:
     ended = [r.status for r in results if r.method == summary.method and not r.ok]
     text = ", ".join(f"{ended.count(status)} {status}" for status in dict.fromkeys(ended))
     return Entry(text or MISSING, text, failed=bool(text))
@@ -279,7 +279,7 @@ def _averaged_field(summaries: Sequence[Summary], shown_as: Column) -> list[Entr
     return with_best(entries, shown_as, eligible)
 
 
-def _pairs_text(results: Sequence[Row]) -> str:
+def _pairs_text(results: Sequence[Result]) -> str:
     """How many pairs of which grid, times the seeds where each pair has them all."""
     pairs, places, seeds = (len({getattr(r, of) for r in results}) for of in ("pair", "place", "seed"))
     if seeds > 1 and pairs == places * seeds:
@@ -287,13 +287,13 @@ def _pairs_text(results: Sequence[Row]) -> str:
     return f"{counted(pairs, 'pair')} ({_grid_text(results, ('motion', 'seed'))})"
 
 
-def _photographs_text(results: Sequence[Row]) -> str:
+def _photographs_text(results: Sequence[Result]) -> str:
     """How many pairs of how many rigs."""
     pairs, rigs = (len({getattr(r, of) for r in results}) for of in ("pair", "rig"))
     return f"{counted(pairs, 'pair')} of photographs ({counted(rigs, 'rig')})"
 
 
-def _grid_text(results: Sequence[Row], beside: Sequence[str]) -> str:
+def _grid_text(results: Sequence[Result], beside: Sequence[str]) -> str:
     counts = {name: len({getattr(r, name) for r in results}) for name in ("scene", "rig", *beside)}
     return ", ".join(counted(n, name) for name, n in counts.items() if n > 1 or name not in beside)
 
