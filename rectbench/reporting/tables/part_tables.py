@@ -88,10 +88,10 @@ class _Wording:
 
 
 _WORDINGS = {
-    "Result error": _Wording(
+    "Row error": _Wording(
         "rows",
         "row-error",
-        "Result error",
+        "Row error",
         "Of SIFT matches within 3 px of the pose's epipolar planes, and of true correspondences; {pose} "
         "pose, averages over seeds.",
         "Of the corners of a calibration board, the measure to trust, where both images show one; and of "
