@@ -1,1 +1,1 @@
-"""Contracts of rectifiers, scenes, metrics and figures, and what these are handed. Imports rendering and below."""
+"""Contracts of rectifiers, scenes, metrics and figures, and what these get. Imports rendering and below."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import inspect
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
@@ -10,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple
 
 from rectbench.errors import InvalidInput
 from rectbench.registry import registry
-from rectbench.registry.kind import Described, Kind
+from rectbench.registry.kind import Described, Kind, described_object
 
 if TYPE_CHECKING:  # what needs nothing but a figure's name is to be quick
     import matplotlib.figure
@@ -121,19 +120,11 @@ class Figure(ABC):
 
 
 def _described(value: Any) -> Described[Figure] | None:
-    """A figure, or the only instance of a class of them."""
-    if inspect.isclass(value) and issubclass(value, Figure):
-        if inspect.isabstract(value):
-            return None
-        value = value()
-    if not isinstance(value, Figure):
-        return None
-    for attribute in ("name", "topic"):
-        if not isinstance(found := getattr(value, attribute, None), str) or not found:
-            raise InvalidInput(f"{type(value).__name__}.{attribute} is {found!r}; expected a text")
-    if strange := sorted(value.needs - {"images"}):
-        raise InvalidInput(f"{type(value).__name__}.needs holds {strange[0]!r}; expected at most images")
-    return Described(value.name, (inspect.getdoc(type(value)) or "").partition("\n")[0], value)
+    described = described_object(value, Figure, "topic")
+    if described and (strange := sorted(described.value.needs - {"images"})):
+        kind = type(described.value).__name__
+        raise InvalidInput(f"{kind}.needs holds {strange[0]!r}; expected at most images")
+    return described
 
 
 FIGURES: Kind[Figure] = Kind(

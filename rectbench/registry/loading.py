@@ -22,7 +22,7 @@ from types import ModuleType
 from typing import Any, Generic, TypeVar
 
 from rectbench.errors import InvalidInput, UnknownName
-from rectbench.registry.kind import Described, Kind, Plugin
+from rectbench.registry.kind import Kind, Plugin
 from rectbench.registry.sources import plugin_digest
 from rectbench.store.keys import code_digest, digest, file_digest
 
@@ -133,14 +133,11 @@ def _built_in_files(package: str) -> Iterator[tuple[str, Path]]:
                 yield ".".join((package, *names)), path
 
 
-def _built_in_digest(module: str, path: Path) -> str:
-    """One of rectbench's own modules sees more of it than the public names."""
-    return code_digest(module) if module.startswith("rectbench.") else plugin_digest(path)
-
-
 def _built_in(kind: Kind[T], module: str, path: Path) -> list[Plugin[T]]:
-    loaded = importlib.import_module(module)
-    plugins = _plugins_in(kind, loaded, path, lambda: _built_in_digest(module, path))
+    def source() -> str:  # rectbench's own modules see more of it than the public names
+        return code_digest(module) if module.startswith("rectbench.") else plugin_digest(path)
+
+    plugins = _plugins_in(kind, importlib.import_module(module), path, source)
     return plugins if kind.is_shared else _require(kind, plugins)
 
 
@@ -156,14 +153,14 @@ def _announced(kind: Kind[T], point: importlib.metadata.EntryPoint) -> list[Plug
     if isinstance(loaded, ModuleType):
         return _require(kind, _plugins_in(kind, loaded, path, source))
     described = kind.described(loaded)
-    return _require(kind, [] if described is None else [_plugin(kind, described, path, source)])
+    return _require(kind, [] if described is None else [Plugin(kind, *described, path, source)])
 
 
 def _from_file(kind: Kind[T], path: Path) -> list[Plugin[T]]:
     if read := kind.by_suffix.get(path.suffix):
         described, files = read(path)
         source = digest({str(file): file_digest(file) for file in files})
-        return [_plugin(kind, described, path, lambda: source)]
+        return [Plugin(kind, *described, path, lambda: source)]
     try:
         source = plugin_digest(path)
     except SyntaxError:
@@ -217,14 +214,10 @@ def _lies_in(module: ModuleType, folder: Path) -> bool:
 def _plugins_in(kind: Kind[T], module: ModuleType, path: Path, source: Callable[[], str]) -> list[Plugin[T]]:
     own = {id(value): value for value in vars(module).values() if _is_own(value, module)}
     return [
-        _plugin(kind, described, path, source)
+        Plugin(kind, *described, path, source)
         for value in own.values()
         if (described := kind.described(value)) is not None
     ]
-
-
-def _plugin(kind: Kind[T], described: Described[T], path: Path, source: Callable[[], str]) -> Plugin[T]:
-    return Plugin(kind, described.name, described.summary, path, source, described.value)
 
 
 def _is_own(value: Any, module: ModuleType) -> bool:
