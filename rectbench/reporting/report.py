@@ -9,7 +9,7 @@ from typing import Any
 from rectbench.plugins.figure import Sources
 from rectbench.progress import Progress
 from rectbench.reporting.figures import EXTENSIONS, draw_changed, placed_drawings
-from rectbench.reporting.page.page import render_page
+from rectbench.reporting.page import render_page
 from rectbench.reporting.sources import sources_of
 from rectbench.reporting.tables.part_tables import all_tables
 from rectbench.reporting.tables.table import SPELLINGS, Table

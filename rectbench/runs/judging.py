@@ -30,14 +30,11 @@ Place = tuple[str, str, str, str, int]
 class Measured:
     """What the rows say about one statement."""
 
-    label: str
-    clause: str
-    """The part of the claim it measures; empty where the claim is one."""
+    statement: Statement
     mean: float
     low: float
     high: float
     """The 95 % bootstrap interval."""
-    expected: str
     verdict: Verdict
     pairs_held: int
     """On how many pairs the mean over seeds is within the bounds."""
@@ -52,11 +49,14 @@ class Measured:
 class Judged:
     """A claim and its verdict."""
 
-    name: str
-    says: str
+    claim: Claim
     verdict: Verdict
-    because: str
     tests: tuple[Measured, ...]
+
+    @property
+    def because(self) -> str:
+        """Why it is so, as the claim states for this verdict."""
+        return self.claim.because.get(self.verdict, "")
 
 
 def judged_claims(
@@ -78,7 +78,7 @@ def _judged(claim: Claim, rows: Sequence[Result], columns: Collection[str]) -> J
         (verdict,) = verdicts
     elif "not held" in verdicts:
         verdict = "not held"
-    return Judged(claim.name, claim.says, verdict, claim.because.get(verdict, ""), tests)
+    return Judged(claim, verdict, tests)
 
 
 def _measured(statement: Statement, rows: Sequence[Result]) -> Measured:
@@ -92,19 +92,8 @@ def _measured(statement: Statement, rows: Sequence[Result]) -> Measured:
         verdict = _verdict(statement, low, high, failed)
     if cells == 1:  # one number has no interval
         low = high = math.nan
-    return Measured(
-        label=statement.label,
-        clause=statement.clause,
-        mean=mean,
-        low=low,
-        high=high,
-        expected=statement.expected,
-        verdict=verdict,
-        pairs_held=_pairs_held(statement, by_pair),
-        pairs=len(by_pair),
-        cells=cells,
-        failed=failed,
-    )
+    held = _pairs_held(statement, by_pair)
+    return Measured(statement, mean, low, high, verdict, held, len(by_pair), cells, failed)
 
 
 def _pairs_needed(statement: Statement) -> float:

@@ -12,15 +12,21 @@ from rectbench.plugins.metric import Column
 from rectbench.plugins.result import Result
 from rectbench.reporting.asked import methods_part, wanted_figures
 from rectbench.reporting.charts.starts import SAME_MINIMUM, Starts, start_study, study_method
-from rectbench.reporting.names import named, slug
-from rectbench.reporting.tables.claims_tables import claims_tables
-from rectbench.reporting.tables.labels import one_line, pair_labels
+from rectbench.reporting.names import named, one_line, pair_labels, slug
 from rectbench.reporting.tables.numbers import MISSING, three_digits
-from rectbench.reporting.tables.photograph_tables import photograph_tables
-from rectbench.reporting.tables.table import Entry, Heading, Section, Table, number, whole, words
+from rectbench.reporting.tables.run_tables import claims_tables, failures_table, photograph_tables
+from rectbench.reporting.tables.table import (
+    Entry,
+    Heading,
+    Section,
+    Table,
+    number,
+    text_heading,
+    whole,
+    words,
+)
 from rectbench.reporting.tables.tabulation import (
     distortion_table,
-    failures_table,
     heading,
     is_ranked,
     main_tables,
@@ -148,6 +154,7 @@ def pose_table(run: Run) -> Table:
     """The estimated poses, a row a pair; all methods of a pair share them."""
     columns = topic_columns(run, "Poses")
     keys = [column.key for column in columns]
+    count = Heading("poses", "poses", meaning="How many were estimated.")
     rows = [
         _pose_row(one_line(label), _poses(run.select(place=place), keys), columns, np.mean)
         for place, label in pair_labels(run).items()
@@ -161,11 +168,7 @@ def pose_table(run: Run) -> Table:
         title=titled(run, "Poses estimated from the images"),
         caption=("Against the true pose" if run.has_truth else "Against the calibration")
         + "; averages over seeds, and the median over all. σ is what the estimate believes.",
-        headings=(
-            Heading("pair", "pair", numeric=False),
-            Heading("poses", "poses", meaning="How many were estimated."),
-            *map(heading, columns),
-        ),
+        headings=(text_heading("pair"), count, *map(heading, columns)),
         sections=(Section("", tuple(rows)),),
     )
 
@@ -187,6 +190,7 @@ def _pose_row(
 def timing_table(run: Run) -> Table:
     """Seconds of each stage beside those somebody else stated."""
     stages = {key: name for key, name in run.catalogue.panels("Time").items() if key in run.metrics}
+    heads = [Heading(f"{name} [s]", k, meaning=run.catalogue.column(k).meaning) for k, name in stages.items()]
     stated = run.stated_seconds
     sections = []
     for rig in run.rigs:
@@ -201,13 +205,7 @@ def timing_table(run: Run) -> Table:
         name=named(run, "timing"),
         title=titled(run, "Time"),
         caption="Seconds a pair, averages over its runs; tables are part of the warp.",
-        headings=(
-            Heading("method", "method", numeric=False),
-            *(
-                Heading(f"{name} [s]", key, meaning=run.catalogue.column(key).meaning)
-                for key, name in stages.items()
-            ),
-        ),
+        headings=(text_heading("method"), *heads),
         sections=tuple(sections),
     )
 
@@ -242,7 +240,7 @@ def starts_table(part: Run, study: Sequence[Starts]) -> Table:
         caption=f"Random starts of {study_method(part)}; at most {100 * SAME_MINIMUM:g} % above the default "
         "start's L is the same minimum.",
         headings=(
-            Heading("pair", "pair", numeric=False),
+            text_heading("pair"),
             Heading("starts", "starts"),
             Heading("same minimum", "same"),
             Heading("failed", "failed", meaning="They gave no rectification."),

@@ -17,11 +17,11 @@ from rectbench.reporting.asked import methods_part, part_title
 from rectbench.reporting.names import named
 from rectbench.reporting.tables.numbers import MISSING, three_digits
 from rectbench.reporting.tables.summaries import Summary, ranked, summarise
-from rectbench.reporting.tables.table import Entry, Heading, Section, Table, number, with_best
+from rectbench.reporting.tables.table import Entry, Heading, Section, Table, number, text_heading, with_best
 from rectbench.runs.run import Run
 
-OK_HEADING = Heading("ok", "ok", meaning="Cells measured of cells planned.")
-NOT_OK_HEADING = Heading("not ok", "not_ok", numeric=False, meaning="How the other cells ended.")
+_METHOD_HEADINGS = text_heading("method"), Heading("ok", "ok", meaning="Cells measured of cells planned.")
+_NOT_OK_HEADING = Heading("not ok", "not_ok", numeric=False, meaning="How the other cells ended.")
 
 PARTIAL = (
     "A method with failed cells is averaged over its measured cells alone. These are other pairs than its "
@@ -54,8 +54,7 @@ def _main_table(run: Run, pose: str) -> Table:
     summaries = ranked(_summaries(run, results, columns), ranking.key)
     failing = any(not s.complete for s in summaries)
     headings = [Heading("rank", "rank", meaning=f"By {ranking.heading}; failures count before it.")]
-    headings += [Heading("method", "method", numeric=False), OK_HEADING]
-    headings += [*map(heading, columns), *[NOT_OK_HEADING] * failing]
+    headings += [*_METHOD_HEADINGS, *map(heading, columns), *[_NOT_OK_HEADING] * failing]
     ranks = [
         Entry(str(i), i) if s.averages.get(ranking.key) and s.ok else Entry(MISSING)
         for i, s in enumerate(summaries, 1)
@@ -115,12 +114,7 @@ def methods_table(run: Run, columns: Sequence[Column], sections: Mapping[str, Se
         name="",
         title="",
         caption="",
-        headings=(
-            Heading("method", "method", numeric=False),
-            OK_HEADING,
-            *map(heading, columns),
-            *[NOT_OK_HEADING] * failing,
-        ),
+        headings=(*_METHOD_HEADINGS, *map(heading, columns), *[_NOT_OK_HEADING] * failing),
         sections=tuple(
             Section(title, _method_rows(_summaries(run, results, columns), columns, results, failing))
             for title, results in sections.items()
@@ -160,12 +154,11 @@ def titled(run: Run, title: str) -> str:
 
 def pair_tables(run: Run) -> list[Table]:
     """Every metric of every method, one table a (scene, rig), one section a pose (motion, seed)."""
-    tables = []
-    for rig, scene in product(run.rigs, run.scenes):
-        results = run.select(scene=scene, rig=rig)
-        if results:
-            tables.append(_pair_table(run, scene, rig, results))
-    return tables
+    return [
+        _pair_table(run, scene, rig, results)
+        for rig, scene in product(run.rigs, run.scenes)
+        if (results := run.select(scene=scene, rig=rig))
+    ]
 
 
 def _pair_table(run: Run, scene: str, rig: str, results: Sequence[Result]) -> Table:
@@ -188,10 +181,7 @@ def _pair_table(run: Run, scene: str, rig: str, results: Sequence[Result]) -> Ta
         name=named(run, "pair", scene, rig),
         title=f"{scene} seen by {rig}",
         caption="Every metric of every method; the best of each row is bold.",
-        headings=(
-            Heading("metric", "metric", numeric=False),
-            *(Heading(method, method) for method in methods),
-        ),
+        headings=(text_heading("metric"), *(Heading(method, method) for method in methods)),
         sections=tuple(sections),
     )
 
@@ -221,28 +211,6 @@ def _status_entry(result: Result | None) -> Entry:
     if result is None:
         return Entry(MISSING)
     return Entry(result.status, result.status, failed=not result.ok)
-
-
-def failures_table(run: Run) -> Table:
-    """Every cell without a measurement, its status and the reason given."""
-    names: tuple[str, ...] = ("scene", "rig", "motion", "pose", "method", "seed", "status", "reason")
-    if any(r.group for r in run.results):
-        names = ("group", *names)
-    rows = tuple(
-        tuple(
-            Entry(str(value) or MISSING, value, failed=name == "status")
-            for name, value in ((name, getattr(r, name)) for name in names)
-        )
-        for r in run.failures
-    )
-    return Table(
-        kind="failures",
-        name="failures",
-        title="Cells without a measurement",
-        caption=f"{len(rows)} of {counted(len(run.results), 'cell')}.",
-        headings=tuple(Heading(n, n, numeric=n == "seed", wraps=n == "reason") for n in names),
-        sections=(Section("", rows),),
-    )
 
 
 def heading(shown_as: Column) -> Heading:
