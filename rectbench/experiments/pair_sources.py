@@ -27,15 +27,14 @@ PairName = tuple[str, str, str]
 class Rendering(BaseModel):
     """How pairs are rendered."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
-    image_width: int | None = Field(
-        default=None, ge=16, description="Width to which rigs are scaled, pixels; None keeps their own."
-    )
-    quality: Literal["path", "fast"] = Field(
-        default="path", description="Path tracing, or the fast integrator."
-    )
-    spp: int = Field(default=64, ge=1, description="Samples a pixel.")
+    image_width: int | None = Field(default=None, ge=16)
+    """Width to which rigs are scaled, pixels; None keeps their own."""
+    quality: Literal["path", "fast"] = "path"
+    """Path tracing, or the fast integrator."""
+    spp: int = Field(default=64, ge=1)
+    """Samples a pixel."""
 
 
 @dataclass(frozen=True)

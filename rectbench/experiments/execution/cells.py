@@ -116,11 +116,7 @@ def _measured(task: CellTask, pair: Pair) -> Outcome:
     rectification, first_fit_s = timed(fit)
     check_result(method.name, rectification, problem)
     case = Case(
-        rectification,
-        pair,
-        pose_is_estimated=task.cell.pose == ESTIMATED,
-        fit=fit,
-        first_fit_s=first_fit_s,
+        rectification, pair, pose_is_estimated=task.cell.pose == ESTIMATED, fit=fit, first_fit_s=first_fit_s
     )
     columns = score(case, task.metrics)
     return Outcome(metrics=columns, notes={**rectification.notes, **case.remarks})

@@ -47,11 +47,7 @@ def run_on_cluster(
     with client:
         index_of = {}
         for index, (task, inputs) in enumerate(tasks):
-            message = {
-                "task": task.model_dump(mode="json"),
-                "inputs": inputs,
-                "limits": asdict(limits),
-            }
+            message = {"task": task.model_dump(mode="json"), "inputs": inputs, "limits": asdict(limits)}
             future = client.submit(run_isolated, message, timeout_s, pure=False)
             index_of[future] = index
         for future in as_completed(index_of, loop=client.loop):
