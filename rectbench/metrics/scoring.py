@@ -20,7 +20,7 @@ BUNDLES: Mapping[str, tuple[str, ...]] = {
         "sampling",
         "coverage",
         "order",
-    )
+    ),
 }
 """Names that stand for several metrics. `geometry`: all that needs neither image nor match."""
 POSE = "pose"

@@ -7,13 +7,18 @@ import itertools
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from rectbench.plugins.figure import Look
 from rectbench.plugins.rectifier import METHODS
 from rectbench.registry import registry
 from rectbench.reporting.tables.numbers import decade
+from rectbench.types import BoolArray, FloatArray
 
 if TYPE_CHECKING:
     from matplotlib.axis import Axis
+    from matplotlib.colorbar import Colorbar
+    from matplotlib.colors import Colormap, Normalize
     from matplotlib.figure import Figure
 
 COLUMN_INCHES = 3.5
@@ -24,6 +29,8 @@ INK = "#222222"
 FAINT = "#8a8a8a"
 PAPER = "#ffffff"
 LOST = "#d9d9d9"
+BEYOND = "#8c1d40"
+"""The colours of what is not there, and of what lies beyond the end of a scale."""
 
 STYLE: dict[Any, Any] = {
     "font.family": "DejaVu Sans",
@@ -114,6 +121,37 @@ def plain_log_ticks(axis: Axis) -> None:
     axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if short else (1.0,)))
     axis.set_major_formatter(FuncFormatter(lambda value, _: decade(value)))
     axis.set_minor_formatter(NullFormatter())
+
+
+def shaded(values: FloatArray, lens: BoolArray, norm: Normalize) -> FloatArray:
+    """Colours [h, w, 4] of values [h, w], NaN having its own; white where the lens shows nothing."""
+    colours = shades()
+    found: FloatArray = colours(norm(values))
+    found[np.isnan(values)] = colours.get_bad()
+    found[~lens] = (1.0, 1.0, 1.0, 1.0)
+    return found
+
+
+def shades() -> Colormap:
+    """Viridis, with colours of their own for what lies beyond the scale and for what is not mapped."""
+    from matplotlib import colormaps
+
+    return colormaps["viridis"].with_extremes(over=BEYOND, bad=LOST)
+
+
+def add_colour_bar(
+    figure: Figure,
+    place: tuple[float, float, float, float],
+    norm: Normalize,
+    colours: Colormap | str,
+    extend: str = "both",
+) -> Colorbar:
+    """The scale of the colours, at a place (left, bottom, width, height) in shares of the figure."""
+    from matplotlib.cm import ScalarMappable
+
+    bar = figure.colorbar(ScalarMappable(norm, colours), cax=figure.add_axes(place), extend=extend)
+    bar.outline.set_linewidth(0.4)
+    return bar
 
 
 def encode(figure: Figure, extension: str, dpi: int) -> bytes:

@@ -18,10 +18,10 @@ from rectbench.reporting.charts.grouped_bars import draw_bars
 from rectbench.reporting.charts.squares import mapped_cells, source_squares
 from rectbench.reporting.charts.timing import stage_chart
 from rectbench.reporting.pictures.clouds import SIZE, Clouds
-from rectbench.reporting.pictures.maps import BEYOND, DistortionMaps
+from rectbench.reporting.pictures.maps import DistortionMaps
 from rectbench.reporting.pictures.pairs import RectifiedPairs
 from rectbench.reporting.pictures.views import BACKGROUND, View, looking_at, painted, patches_of, two_views
-from rectbench.reporting.style import looks
+from rectbench.reporting.style import BEYOND, looks
 from rectbench.runs.run import Run, read_run
 from tests.reporting.runs import METHODS, fake_pair, fake_rectification, fake_rig, make_row, quick_rows
 

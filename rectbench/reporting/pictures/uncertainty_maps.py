@@ -17,7 +17,7 @@ from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
 from rectbench.metrics import Uncertainty
 from rectbench.reporting.pictures.panels import fit_into_box, panel_grid, write_head, write_message
-from rectbench.reporting.style import LOST, PAGE_INCHES, STYLE, encode
+from rectbench.reporting.style import LOST, PAGE_INCHES, STYLE, add_colour_bar, encode, shaded, shades
 from rectbench.reporting.tables.numbers import three_digits
 from rectbench.rigs.covariance import RigCovariance
 from rectbench.types import FloatArray
@@ -26,7 +26,7 @@ from rectbench.writing import write_atomically
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.colors import Colormap, Normalize
+    from matplotlib.colors import Normalize
     from matplotlib.figure import Figure
 
 MAP_PIXELS = 150_000
@@ -39,7 +39,6 @@ LEAST_PX, LEAST_PERCENT = 1e-3, 1e-1
 """Ends of the scales where nothing is uncertain."""
 WHOLE_DISTANCE = 100.0
 """Per cent; of a distance that is less sure than this, no more can be said."""
-BEYOND = "#8c1d40"
 MOST_COLUMNS = 4
 
 
@@ -188,32 +187,26 @@ def _draw_maps(figure: Figure, axes: Sequence[Axes], maps: _Maps, lens: NDArray[
 
 
 def _draw_map(ax: Axes, values: FloatArray, lens: NDArray[np.bool_], norm: Normalize) -> None:
-    shades = _shades()(norm(values))
-    shades[np.isnan(values)] = _shades().get_bad()
-    shades[~lens] = (1.0, 1.0, 1.0, 1.0)
-    ax.imshow(shades, interpolation="antialiased", aspect="auto")
+    ax.imshow(shaded(values, lens, norm), interpolation="antialiased", aspect="auto")
     fit_into_box(ax, values.shape[1], values.shape[0])
 
 
 def _draw_bar(figure: Figure, ax: Axes, maps: _Maps) -> None:
     """The colour bar of a quantity, right of its last map, and what lies beyond its end."""
-    from matplotlib.cm import ScalarMappable
     from matplotlib.colors import LogNorm
     from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 
     box = ax.get_position()
     left = box.x1 + 0.07 / PAGE_INCHES
-    bar_ax = figure.add_axes((left, box.y0 + 0.15 * box.height, 0.09 / PAGE_INCHES, 0.62 * box.height))
+    place = (left, box.y0 + 0.15 * box.height, 0.09 / PAGE_INCHES, 0.62 * box.height)
     top = float(maps.norm.vmax or 0.0)
     clipped = any((values > top).any() for values in maps.values)
-    extend = "max" if clipped else "neither"
-    bar = figure.colorbar(ScalarMappable(maps.norm, _shades()), cax=bar_ax, extend=extend)
+    bar_ax = add_colour_bar(figure, place, maps.norm, shades(), "max" if clipped else "neither").ax
     locator = LogLocator(subs=(1.0, 2.0, 5.0)) if isinstance(maps.norm, LogNorm) else MaxNLocator(6)
     bar_ax.yaxis.set_major_locator(locator)
     bar_ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     bar_ax.yaxis.set_minor_formatter(NullFormatter())
     bar_ax.set_title(f"σ [{maps.unit}]", loc="left", pad=19)
-    bar.outline.set_linewidth(0.4)
     if clipped:
         bar_ax.text(1.5, 1.08, f"> {top:g}", transform=bar_ax.transAxes, va="center", size=6.5)
 
@@ -223,13 +216,6 @@ def _add_legend(figure: Figure) -> None:
 
     patch = Patch(facecolor=LOST, label="not in both\nimages")
     figure.legend(handles=[patch], loc="lower right", borderaxespad=0, fontsize=6)
-
-
-def _shades() -> Colormap:
-    """Viridis, with colours of their own for what lies beyond the scale and for what is not mapped."""
-    from matplotlib import colormaps
-
-    return colormaps["viridis"].with_extremes(over=BEYOND, bad=LOST)
 
 
 def _at(depth_m: float) -> str:
