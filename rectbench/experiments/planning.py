@@ -87,10 +87,7 @@ class Plan:
 
 def find_report(report: Report | str | Path) -> Report:
     """A report by name, by path, or as it is."""
-    if isinstance(report, Report):
-        return report
-    found: Report = registry(REPORTS).get(report).value
-    return found
+    return report if isinstance(report, Report) else registry(REPORTS).get(report).value
 
 
 def make_plan(report: Report, selection: Selection | None = None, data: str | Path | None = None) -> Plan:

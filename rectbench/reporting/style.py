@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import itertools
 from collections.abc import Iterator, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -32,47 +33,8 @@ LOST = "#d9d9d9"
 BEYOND = "#8c1d40"
 """The colours of what is not there, and of what lies beyond the end of a scale."""
 
-STYLE: dict[Any, Any] = {
-    "font.family": "DejaVu Sans",
-    "font.size": 7,
-    "axes.titlesize": 7,
-    "axes.titlelocation": "left",
-    "axes.titlepad": 4,
-    "axes.labelsize": 7,
-    "axes.labelpad": 2,
-    "axes.edgecolor": INK,
-    "axes.linewidth": 0.6,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.axisbelow": True,
-    "axes.grid": False,
-    "grid.color": "#dddddd",
-    "grid.linewidth": 0.5,
-    "xtick.labelsize": 6.5,
-    "ytick.labelsize": 6.5,
-    "xtick.major.width": 0.6,
-    "ytick.major.width": 0.6,
-    "xtick.minor.width": 0.4,
-    "ytick.minor.width": 0.4,
-    "legend.fontsize": 7,
-    "legend.frameon": False,
-    "legend.handlelength": 1.2,
-    "legend.handletextpad": 0.5,
-    "legend.columnspacing": 1.4,
-    "lines.linewidth": 1.0,
-    "figure.facecolor": PAPER,
-    "figure.constrained_layout.w_pad": 0.02,
-    "figure.constrained_layout.h_pad": 0.02,
-    "figure.constrained_layout.wspace": 0.02,
-    "figure.constrained_layout.hspace": 0.02,
-    "savefig.facecolor": PAPER,
-    "hatch.linewidth": 0.4,
-    "text.parse_math": False,
-    "pdf.fonttype": 42,
-    "ps.fonttype": 42,
-    "svg.fonttype": "path",
-    "svg.hashsalt": "rectbench",
-}
+STYLE = Path(__file__).with_name("templates") / "rectbench.mplstyle"
+"""The rest of how figures look, in matplotlib's words."""
 
 _BUILT_IN = METHODS.packages
 _COLOURS = (

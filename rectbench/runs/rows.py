@@ -16,6 +16,9 @@ from rectbench.experiments.execution.outcomes import Status
 from rectbench.plugins.result import IDENTITY, Cell, Result, distinct
 from rectbench.runs.record import first_fault
 
+_ALIKE = {"scene", "rig", "motion", "pose", "seed", "status", "reason", "group", "notes"}
+"""What a result has as the table holds it."""
+
 
 class _StoredRow(Cell):
     """A row as a table holds it: every column that is not named here is a metric."""
@@ -59,18 +62,10 @@ def read_rows(table: Iterable[Mapping[Any, Any]], path: Path) -> tuple[Result, .
     return tuple(
         Result(
             cell=row.cell,
-            scene=row.scene,
-            rig=row.rig,
-            motion=row.motion,
-            pose=row.pose,
-            seed=row.seed,
             method=labels[row.group][row.method, row.options],
             options=json.loads(row.options),
-            status=row.status,
-            reason=row.reason,
-            group=row.group,
             metrics=row.model_extra or {},
-            notes=row.notes,
+            **row.model_dump(include=_ALIKE),
         )
         for row in stored
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -153,12 +153,5 @@ def _draw_curves(ax: Axes, curves: Sequence[EnergyCurve]) -> None:
     ax.set_ylabel("L")
     ax.grid(axis="y")
     by_number = sorted(ax.lines, key=lambda line: str(line.get_label())[:2])  # columns c₁, c₂, c₃
-    ax.legend(
-        handles=by_number,
-        loc="lower center",
-        bbox_to_anchor=(0.45, 1.0),
-        ncols=3,
-        fontsize=5.5,
-        handlelength=1.8,
-        columnspacing=0.8,
-    )
+    above: dict[str, Any] = {"loc": "lower center", "bbox_to_anchor": (0.45, 1.0)}
+    ax.legend(handles=by_number, **above, ncols=3, fontsize=5.5, handlelength=1.8, columnspacing=0.8)

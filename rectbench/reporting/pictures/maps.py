@@ -73,14 +73,7 @@ class DistortionMaps(PairPicture):
         plain_log_ticks(bar.ax.yaxis)
         bar.set_label("distortion L")
         if any((m.values > top).any() for m in shown):
-            bar.ax.annotate(
-                f"> {decade(top)}",
-                (0, 1.05),
-                xycoords="axes fraction",
-                xytext=(0, 4),
-                textcoords="offset points",
-                size=6.5,
-            )
+            bar.ax.annotate(f"> {decade(top)}", (0, 1.05), (0, 4), "axes fraction", "offset points", size=6.5)
         if any(np.isnan(m.values[m.lens]).any() for m in shown):
             patch = Patch(facecolor=LOST, label="not mapped")
             figure.legend(handles=[patch], loc="lower right", borderaxespad=0, fontsize=6)

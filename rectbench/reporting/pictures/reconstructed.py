@@ -81,7 +81,7 @@ def draw_reconstruction(reconstruction: Reconstruction) -> Figure:
         "the points, seen from beside the camera": beside,
         "the points, seen from above": above,
     }
-    with rc_context(STYLE):
+    with rc_context(fname=STYLE):
         figure, axes = panel_grid(len(panels), 2, height / width, BAR_INCHES)
         for ax, (name, image) in zip(axes, panels.items(), strict=True):
             ax.imshow(image, interpolation="antialiased", aspect="auto")

@@ -59,7 +59,7 @@ def write_uncertainty(
     """
     from matplotlib import rc_context
 
-    with rc_context(STYLE):
+    with rc_context(fname=STYLE):
         figure = draw_uncertainty(found, camera)
         pictures = {f"uncertainty.{end}": encode(figure, end, DOTS_PER_INCH) for end in ("png", "pdf")}
     arrays = io.BytesIO()
