@@ -11,13 +11,11 @@ from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Fie
 
 from rectbench.experiments.claims import Claim
 from rectbench.experiments.pair_sources import (
-    Grid,
-    Grouped,
     PairName,
     PairSource,
     Photographed,
+    Rendered,
     Rendering,
-    StatedPairs,
     StatedPart,
 )
 from rectbench.pairs.spec import CALIBRATED, ESTIMATED
@@ -102,6 +100,16 @@ class CellLimits(BaseModel):
     """What one worker may allocate, GiB."""
 
 
+_STATING_PAIRS: Mapping[str, tuple[tuple[str, ...], tuple[str, ...], str]] = {
+    "photographs": (("methods",), ("scenes", "rigs", "pairs", "groups"), "pairs found in a folder"),
+    "groups": ((), ("scenes", "rigs", "methods", "options", "pairs"), "them in the groups"),
+    "pairs": (("methods",), ("scenes", "rigs"), "them in the pairs"),
+    "scenes": (("scenes", "rigs", "methods"), (), ""),
+}
+"""By the field that states a report's pairs: the fields that must not be empty then, those that must be, and
+what is expected in the place of these."""
+
+
 class Report(Rendering, GivenMatches, CellLimits):
     """A report: every scene × rig × motion × pose × method × seed, each one row of its table.
 
@@ -165,13 +173,7 @@ class Report(Rendering, GivenMatches, CellLimits):
     @property
     def pair_source(self) -> PairSource:
         """Where its pairs come from."""
-        return self._kind_of_source(self.parts)
-
-    @property
-    def _kind_of_source(self) -> type[PairSource]:
-        if self.photographs:
-            return Photographed
-        return Grouped if self.groups else StatedPairs if self.pairs else Grid
+        return Photographed(self.parts) if self.photographs else Rendered(self.parts)
 
     @property
     def parts(self) -> tuple[StatedPart, ...]:
@@ -201,10 +203,11 @@ class Report(Rendering, GivenMatches, CellLimits):
 
     @model_validator(mode="after")
     def _states_its_pairs_in_one_way(self) -> Report:
-        source = self._kind_of_source
-        if beside := [name for name in source.excludes if getattr(self, name)]:
-            raise ValueError(f"{beside[0]} stand beside {source.stated_by}; {source.expected}")
-        if missing := [name for name in source.needs if not getattr(self, name)]:
+        stated_by = next((name for name in _STATING_PAIRS if getattr(self, name)), "scenes")
+        needs, excludes, instead = _STATING_PAIRS[stated_by]
+        if beside := [name for name in excludes if getattr(self, name)]:
+            raise ValueError(f"{beside[0]} stand beside {stated_by}; expected {instead}")
+        if missing := [name for name in needs if not getattr(self, name)]:
             raise ValueError(f"{missing[0]} are missing; expected at least one, or groups")
         names = [group.name for group in self.groups]
         if len(set(names)) < len(names) or "" in names:
@@ -216,7 +219,7 @@ class Report(Rendering, GivenMatches, CellLimits):
     @model_validator(mode="after")
     def _has_poses_that_can_be(self) -> Report:
         foreign = [pose for pose in self.poses if pose not in (CALIBRATED, ESTIMATED)]
-        if foreign and not self._kind_of_source.has_truth:
+        if foreign and self.photographs:
             raise ValueError(f"pose of photographs is {foreign[0]}; expected {CALIBRATED} or {ESTIMATED}")
         return self
 
