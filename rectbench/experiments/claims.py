@@ -54,14 +54,11 @@ class Statement(BaseModel):
         least, most = self.bounds
         if not least <= most:
             raise ValueError(f"statement '{self.label}' is true from {least} to {most}; expected a range")
-        if bool(self.rivals) != (self.measure == "wins"):
-            raise ValueError(f"statement '{self.label}' is a {self.measure}; `rivals` are for wins")
-        if (self.against is None) != (self.measure in ("value", "wins")):
-            raise ValueError(
-                f"statement '{self.label}' is a {self.measure}; `against` is for ratio and share"
-            )
-        if (self.within is None) != (self.measure != "share"):
-            raise ValueError(f"statement '{self.label}' is a {self.measure}; `within` is for share")
+        allowed = {"rivals": ["wins"], "against": ["ratio", "share"], "within": ["share"]}
+        for name, measures in allowed.items():
+            if bool(getattr(self, name)) != (self.measure in measures):
+                where = " and ".join(measures)
+                raise ValueError(f"statement '{self.label}' is a {self.measure}; `{name}` is for {where}")
         return self
 
     @property

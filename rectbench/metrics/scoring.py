@@ -58,10 +58,10 @@ def needs_of(asked: Iterable[str | Path]) -> frozenset[Need]:
 def digests_of(asked: Iterable[str | Path]) -> dict[str, str]:
     """The digests of these metrics' sources by their names, for the key of a cell.
 
-    Without the built-in ones: the key covers what `rectbench.metrics` imports, and these are all of them.
+    Empty of the built-in ones: the key covers what `rectbench.metrics` imports, and these are all of them.
     """
     plugins = metrics_of(asked).values()
-    return {plugin.name: plugin.digest for plugin in plugins if not plugin.path.is_relative_to(PACKAGE)}
+    return {p.name: "" if p.path.is_relative_to(PACKAGE) else p.digest for p in plugins}
 
 
 def score(case: Case, asked: Iterable[str | Path]) -> dict[str, float]:

@@ -93,14 +93,8 @@ def pose_problem(
 
     Of given pixels each image uses those its lens sees; InvalidInput where it sees none.
     """
-    return Problem(
-        rig=rig,
-        pixels_left=_pixels_of(rig.left, pixels, "left"),
-        pixels_right=_pixels_of(rig.right, pixels, "right"),
-        known_matches=matches,
-        images=images,
-        seed=seed,
-    )
+    left, right = (_pixels_of(getattr(rig, side), pixels, side) for side in ("left", "right"))
+    return Problem(rig, left, right, matches, images, seed)
 
 
 def _pixels_of(camera: Camera, pixels: FloatArray | None, side: str) -> FloatArray:

@@ -18,8 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from rectbench.errors import RectbenchError, Unavailable
-from rectbench.experiments.execution.cells import cell_inputs, run_cell
-from rectbench.experiments.execution.desk import DESK
+from rectbench.experiments.execution.cells import DESK, cell_inputs, run_cell
 from rectbench.experiments.execution.outcomes import Outcome
 from rectbench.experiments.execution.worker import Limits, restrict
 from rectbench.experiments.tasks import CellTask
