@@ -1,4 +1,4 @@
-"""What a rectification is scored by: one file a metric, their catalogue, and what scores by them.
+"""What a rectification is scored by: one file a metric, and what scores by them.
 
 Imports plugins and what is below.
 """

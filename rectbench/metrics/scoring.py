@@ -61,7 +61,7 @@ def digests_of(asked: Iterable[str | Path]) -> dict[str, str]:
     Empty of the built-in ones: the key covers what `rectbench.metrics` imports, and these are all of them.
     """
     plugins = metrics_of(asked).values()
-    return {p.name: "" if p.path.is_relative_to(PACKAGE) else p.digest for p in plugins}
+    return {p.name: "" if p.path.resolve().is_relative_to(PACKAGE) else p.digest for p in plugins}
 
 
 def score(case: Case, asked: Iterable[str | Path]) -> dict[str, float]:
