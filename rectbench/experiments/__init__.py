@@ -1,1 +1,1 @@
-"""Reports, their plans and cells; claims, the gate, comparisons."""
+"""Reports, their claims, plans and cells. Imports pairs, metrics and what is below."""

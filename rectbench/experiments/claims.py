@@ -19,25 +19,33 @@ class Statement(BaseModel):
     '≤ 3'
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
-    label: str = Field(description="What is measured, under which protocol.")
-    clause: str = Field(default="", description="The part of the claim that it measures.")
-    group: str = Field(default="", description="The part of the report it speaks of.")
-    metric: str = Field(description="A column of the rows.")
+    label: str
+    """What is measured, under which protocol."""
+    clause: str = ""
+    """The part of the claim that it measures."""
+    group: str = ""
+    """The part of the report it speaks of."""
+    metric: str
+    """A column of the rows."""
     method: str
-    options: Mapping[str, Any] = Field(default_factory=dict, description="Options its rows have, at least.")
-    against: str | None = Field(default=None, description="The method it is compared with.")
-    rivals: tuple[str, ...] = Field(default=(), description="The methods to win against.")
-    against_group: str | None = Field(default=None, description="Where that one's rows are, if elsewhere.")
-    measure: Literal["value", "ratio", "wins", "share"] = Field(
-        default="value",
-        description="The mean; the geometric mean of the ratio to `against`; the number of pairs where "
-        "the method has the least value of all `rivals`; the share of cells whose ratio is within `within`.",
-    )
+    options: Mapping[str, Any] = Field(default_factory=dict)
+    """Options its rows have, at least."""
+    against: str | None = None
+    """The method it is compared with."""
+    rivals: tuple[str, ...] = ()
+    """The methods to win against."""
+    against_group: str | None = None
+    """Where that one's rows are, if elsewhere."""
+    measure: Literal["value", "ratio", "wins", "share"] = "value"
+    """The mean; the geometric mean of the ratio to `against`; the number of pairs where the method has
+    the least value of all `rivals`; the share of cells whose ratio is within `within`."""
     within: tuple[float, float] | None = None
-    above: float | None = Field(default=None, description="True where the quantity is at least this.")
-    below: float | None = Field(default=None, description="True where the quantity is at most this.")
+    above: float | None = None
+    """True where the quantity is at least this."""
+    below: float | None = None
+    """True where the quantity is at most this."""
 
     @model_validator(mode="after")
     def _can_be_false(self) -> Statement:
@@ -46,14 +54,11 @@ class Statement(BaseModel):
         least, most = self.bounds
         if not least <= most:
             raise ValueError(f"statement '{self.label}' is true from {least} to {most}; expected a range")
-        if bool(self.rivals) != (self.measure == "wins"):
-            raise ValueError(f"statement '{self.label}' is a {self.measure}; `rivals` are for wins")
-        if (self.against is None) != (self.measure in ("value", "wins")):
-            raise ValueError(
-                f"statement '{self.label}' is a {self.measure}; `against` is for ratio and share"
-            )
-        if (self.within is None) != (self.measure != "share"):
-            raise ValueError(f"statement '{self.label}' is a {self.measure}; `within` is for share")
+        allowed = {"rivals": ["wins"], "against": ["ratio", "share"], "within": ["share"]}
+        for name, measures in allowed.items():
+            if bool(getattr(self, name)) != (self.measure in measures):
+                where = " and ".join(measures)
+                raise ValueError(f"statement '{self.label}' is a {self.measure}; `{name}` is for {where}")
         return self
 
     @property
@@ -87,9 +92,11 @@ class Claim(BaseModel):
     'Time'
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     name: str
-    says: str = Field(description="The claim in a sentence.")
+    says: str
+    """The claim in a sentence."""
     statements: tuple[Statement, ...] = Field(min_length=1)
-    because: Mapping[Verdict, str] = Field(description="One sentence why, for each verdict it may get.")
+    because: Mapping[Verdict, str]
+    """One sentence why, for each verdict it may get."""

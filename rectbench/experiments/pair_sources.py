@@ -27,15 +27,14 @@ PairName = tuple[str, str, str]
 class Rendering(BaseModel):
     """How pairs are rendered."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
-    image_width: int | None = Field(
-        default=None, ge=16, description="Width to which rigs are scaled, pixels; None keeps their own."
-    )
-    quality: Literal["path", "fast"] = Field(
-        default="path", description="Path tracing, or the fast integrator."
-    )
-    spp: int = Field(default=64, ge=1, description="Samples a pixel.")
+    image_width: int | None = Field(default=None, ge=16)
+    """Width to which rigs are scaled, pixels; None keeps their own."""
+    quality: Literal["path", "fast"] = "path"
+    """Path tracing, or the fast integrator."""
+    spp: int = Field(default=64, ge=1)
+    """Samples a pixel."""
 
 
 @dataclass(frozen=True)
@@ -71,14 +70,6 @@ class _Source:
     found: Photographs | None = None
     """What is in the folder, for photographs once they are located."""
 
-    stated_by: ClassVar[str]
-    """The field of a report that states such pairs."""
-    needs: ClassVar[tuple[str, ...]] = ()
-    """Fields that must not be empty then,"""
-    excludes: ClassVar[tuple[str, ...]] = ()
-    """and those that must be:"""
-    expected: ClassVar[str] = ""
-    """what is expected in their place."""
     has_truth: ClassVar[bool] = True
     """Whether anybody knows the truth about the pairs."""
     takes_foreign_names: ClassVar[bool] = True
@@ -122,37 +113,9 @@ class Rendered(_Source):
             )
 
 
-class Grid(Rendered):
-    """Every scene with every rig under every motion."""
-
-    stated_by = "scenes"
-    needs = ("scenes", "rigs", "methods")
-
-
-class StatedPairs(Rendered):
-    """Pairs that are listed one by one."""
-
-    stated_by = "pairs"
-    needs = ("methods",)
-    excludes = ("scenes", "rigs")
-    expected = "expected them in the pairs"
-
-
-class Grouped(Rendered):
-    """Groups, each with pairs and methods of its own."""
-
-    stated_by = "groups"
-    excludes = ("scenes", "rigs", "methods", "options", "pairs")
-    expected = "expected them in the groups"
-
-
 class Photographed(_Source):
     """Pairs of photographs, found in a folder that each run names."""
 
-    stated_by = "photographs"
-    needs = ("methods",)
-    excludes = ("scenes", "rigs", "pairs", "groups")
-    expected = "expected pairs found in a folder"
     has_truth = False
     takes_foreign_names = False
     scene_word = "pair"
@@ -189,4 +152,4 @@ class Photographed(_Source):
             )
 
 
-PairSource = Grid | StatedPairs | Grouped | Photographed
+PairSource = Rendered | Photographed

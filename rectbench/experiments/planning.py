@@ -13,13 +13,14 @@ from rectbench.errors import InvalidInput
 from rectbench.experiments.naming import plugins_named, require_known
 from rectbench.experiments.pair_sources import PairName, PairSource, StatedPart
 from rectbench.experiments.spec import REPORTS, Report
-from rectbench.experiments.tasks import Cell, CellTask
+from rectbench.experiments.tasks import CellTask
 from rectbench.metrics.scoring import metrics_of, needs_of
 from rectbench.pairs.finding.photographs import Photographs
 from rectbench.pairs.spec import ESTIMATED, PairSpec
 from rectbench.plugins.figure import FIGURES, usual_figures
 from rectbench.plugins.fitting import checked_options
 from rectbench.plugins.rectifier import METHODS, Rectifier
+from rectbench.plugins.result import Cell, distinct
 from rectbench.registry import Plugin, registry
 from rectbench.rigs.poses import POSES
 from rectbench.store.keys import canonical_json
@@ -45,25 +46,8 @@ class Selection:
                 object.__setattr__(self, name, (given,))
 
 
-@dataclass(frozen=True)
-class OwnNames:
-    """What a report itself names, over all its parts."""
-
-    methods: tuple[str, ...]
-    scenes: tuple[str, ...]
-    rigs: tuple[str, ...]
-    seeds: tuple[int, ...]
-
-    @classmethod
-    def of(cls, parts: Sequence[StatedPart]) -> OwnNames:
-        """Those of all the parts, each once."""
-        pairs = [pair for part in parts for pair in part.pairs]
-        return cls(
-            tuple(dict.fromkeys(name for part in parts for name in part.methods)),
-            tuple(dict.fromkeys(scene for scene, _, _ in pairs)),
-            tuple(dict.fromkeys(rig for _, rig, _ in pairs)),
-            tuple(dict.fromkeys(seed for part in parts for seed in part.seeds)),
-        )
+OwnNames = Mapping[str, tuple[Any, ...]]
+"""What a report itself names over all its parts, by kind: methods, scenes, rigs and seeds."""
 
 
 @dataclass(frozen=True)
@@ -86,10 +70,7 @@ class Plan:
 
 def find_report(report: Report | str | Path) -> Report:
     """A report by name, by path, or as it is."""
-    if isinstance(report, Report):
-        return report
-    found: Report = registry(REPORTS).get(report).value
-    return found
+    return report if isinstance(report, Report) else registry(REPORTS).get(report).value
 
 
 def make_plan(report: Report, selection: Selection | None = None, data: str | Path | None = None) -> Plan:
@@ -103,7 +84,7 @@ def make_plan(report: Report, selection: Selection | None = None, data: str | Pa
     source = report.pair_source.located(report.name, data)
     if source.has_truth:
         require_known("pose", report.poses, (*POSES, ESTIMATED))
-    own = OwnNames.of(source.parts)
+    own = _own_names(source.parts)
     tasks: dict[Cell, CellTask] = {}
     for part in source.parts:
         for task in _tasks_of(part, source, report, own, chosen):
@@ -116,9 +97,19 @@ def make_plan(report: Report, selection: Selection | None = None, data: str | Pa
     stated = [name for part in source.parts for name in part.options]
     _check_option_names((*stated, *chosen.options), {cell.method for cell in tasks})
     is_whole = not chosen.options and all(
-        set(names) <= set(_chosen_names(getattr(chosen, kind), names)) for kind, names in vars(own).items()
+        set(names) <= set(_chosen_names(getattr(chosen, kind), names)) for kind, names in own.items()
     )
     return Plan(report, chosen, tuple(_sharing_pairs(tasks.values())), is_whole, source.found)
+
+
+def _own_names(parts: Sequence[StatedPart]) -> OwnNames:
+    pairs = [pair for part in parts for pair in part.pairs]
+    return {
+        "methods": distinct(name for part in parts for name in part.methods),
+        "scenes": distinct(scene for scene, _, _ in pairs),
+        "rigs": distinct(rig for _, rig, _ in pairs),
+        "seeds": distinct(seed for part in parts for seed in part.seeds),
+    }
 
 
 def _tasks_of(
@@ -195,8 +186,8 @@ def _figure_needs(part: StatedPart) -> frozenset[str]:
 
 def _chosen_methods(part: StatedPart, own: OwnNames, chosen: Selection) -> list[str]:
     """The methods of a part that a run is to have: its own, and those that no part has."""
-    names = _chosen_names(chosen.methods, own.methods)
-    foreign = [name for name in names if name not in own.methods]
+    names = _chosen_names(chosen.methods, own["methods"])
+    foreign = [name for name in names if name not in own["methods"]]
     return [*(name for name in part.methods if name in names), *(foreign if part.is_open else ())]
 
 
@@ -206,7 +197,7 @@ def _chosen_pairs(
     """The pairs of a part that a run is to have, in the part's order."""
     pairs = part.pairs
     for place, kind in enumerate(("scenes", "rigs")):
-        its_own: tuple[str, ...] = getattr(own, kind)
+        its_own = own[kind]
         names = _chosen_names(getattr(chosen, kind), its_own)
         if not names:
             raise InvalidInput(f"no {kind} are selected; expected at least one")
@@ -227,13 +218,13 @@ def _with(pair: PairName, place: int, name: str) -> PairName:
 
 def _chosen_seeds(part: StatedPart, own: OwnNames, chosen: Selection) -> tuple[int, ...]:
     """The seeds of a part that a run is to have: its own, and those that no part has."""
-    seeds = _chosen_names(chosen.seeds, own.seeds)
+    seeds = _chosen_names(chosen.seeds, own["seeds"])
     for seed in seeds:
         if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
             raise InvalidInput(f"seed is {seed!r}; expected a whole number from 0 on")
     if not seeds:
         raise InvalidInput("no seeds are selected; expected at least one")
-    return tuple(dict.fromkeys(seed for seed in seeds if seed in part.seeds or seed not in own.seeds))
+    return tuple(dict.fromkeys(seed for seed in seeds if seed in part.seeds or seed not in own["seeds"]))
 
 
 def _check_option_names(stated: Sequence[str], methods: set[str]) -> None:

@@ -11,13 +11,11 @@ from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Fie
 
 from rectbench.experiments.claims import Claim
 from rectbench.experiments.pair_sources import (
-    Grid,
-    Grouped,
     PairName,
     PairSource,
     Photographed,
+    Rendered,
     Rendering,
-    StatedPairs,
     StatedPart,
 )
 from rectbench.pairs.spec import CALIBRATED, ESTIMATED
@@ -52,43 +50,64 @@ class Group(BaseModel):
     ('abraham',)
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
-    name: Slug | Literal[""] = Field(description="Name in the rows and in the names of figures.")
-    title: str = Field(default="", description="Heading of the part.")
-    pairs: tuple[PairName, ...] = Field(description="The pairs: (scene, rig, motion) each, by name or path.")
-    methods: Names = Field(description="Rectifiers, by name or path.")
-    options: OptionSets = Field(default_factory=dict, description="As a report's.")
-    metrics: tuple[str, ...] | None = Field(default=None, description="In the place of the report's.")
-    figures: tuple[FigureName, ...] | None = Field(default=None, description="In the place of the report's.")
-    seeds: Annotated[tuple[int, ...], Field(min_length=1)] | None = Field(
-        default=None, description="In the place of the report's."
-    )
-    image_width: int | None = Field(default=None, ge=16, description="In the place of the report's.")
-    is_open: bool = Field(default=True, description="Whether methods added to a run join this part.")
-    alone: bool = Field(
-        default=False,
-        description="Whether its cells run one at a time on all cores, for times worth quoting.",
-    )
+    name: Slug | Literal[""]
+    """Name in the rows and in the names of figures."""
+    title: str = ""
+    """Heading of the part."""
+    pairs: tuple[PairName, ...]
+    """The pairs: (scene, rig, motion) each, by name or path."""
+    methods: Names
+    """Rectifiers, by name or path."""
+    options: OptionSets = Field(default_factory=dict)
+    """As a report's."""
+    metrics: tuple[str, ...] | None = None
+    """In the place of the report's."""
+    figures: tuple[FigureName, ...] | None = None
+    """In the place of the report's."""
+    seeds: Annotated[tuple[int, ...], Field(min_length=1)] | None = None
+    """In the place of the report's."""
+    image_width: int | None = Field(default=None, ge=16)
+    """In the place of the report's."""
+    is_open: bool = True
+    """Whether methods added to a run join this part."""
+    alone: bool = False
+    """Whether its cells run one at a time on all cores, for times worth quoting."""
 
 
 class GivenMatches(BaseModel):
     """What rectifiers that work from matches are given."""
 
-    match_count: int = Field(
-        default=1000, ge=8, description="Matches given to the rectifiers that need them."
-    )
-    match_noise_px: float = Field(
-        default=0.0, ge=0, description="Noise on those, standard deviation, pixels."
-    )
+    model_config = ConfigDict(use_attribute_docstrings=True)
+
+    match_count: int = Field(default=1000, ge=8)
+    """Matches given to the rectifiers that need them."""
+    match_noise_px: float = Field(default=0.0, ge=0)
+    """Noise on those, standard deviation, pixels."""
 
 
 class CellLimits(BaseModel):
     """When a cell or a pair is given up."""
 
-    timeout_s: float = Field(default=120.0, gt=0, description="After which a cell is stopped, seconds.")
-    render_timeout_s: float = Field(default=1800.0, gt=0, description="The same for rendering one pair.")
-    memory_gib: float = Field(default=4.0, gt=0, description="What one worker may allocate, GiB.")
+    model_config = ConfigDict(use_attribute_docstrings=True)
+
+    timeout_s: float = Field(default=120.0, gt=0)
+    """After which a cell is stopped, seconds."""
+    render_timeout_s: float = Field(default=1800.0, gt=0)
+    """The same for rendering one pair."""
+    memory_gib: float = Field(default=4.0, gt=0)
+    """What one worker may allocate, GiB."""
+
+
+_STATING_PAIRS: Mapping[str, tuple[tuple[str, ...], tuple[str, ...], str]] = {
+    "photographs": (("methods",), ("scenes", "rigs", "pairs", "groups"), "pairs found in a folder"),
+    "groups": ((), ("scenes", "rigs", "methods", "options", "pairs"), "them in the groups"),
+    "pairs": (("methods",), ("scenes", "rigs"), "them in the pairs"),
+    "scenes": (("scenes", "rigs", "methods"), (), ""),
+}
+"""By the field that states a report's pairs: the fields that must not be empty then, those that must be, and
+what is expected in the place of these."""
 
 
 class Report(Rendering, GivenMatches, CellLimits):
@@ -113,55 +132,48 @@ class Report(Rendering, GivenMatches, CellLimits):
     (('street', 't265', 'sideways'), ('street', 'canon-8mm', 'sideways'))
     """
 
-    name: Slug = Field(description="Name on the command line and of the folder.")
-    title: str = Field(description="Heading of the page.")
-    description: str = Field(default="", description="A paragraph under the heading.")
-    scenes: tuple[str, ...] = Field(default=(), description="Scenes, by name or path.")
-    rigs: tuple[str, ...] = Field(default=(), description="Rigs, by name or path.")
-    motions: Names = Field(default=("as-calibrated",), description="How the right camera stands to the left.")
-    pairs: tuple[PairName, ...] = Field(
-        default=(), description="Pairs of (scene, rig, motion) in the place of scenes × rigs × motions."
-    )
-    groups: tuple[Group, ...] = Field(default=(), description="Parts, in the place of one grid.")
-    photographs: bool = Field(
-        default=False,
-        description="Whether the pairs are photographs, found in a folder that each run names; what is "
-        "measured then needs no truth.",
-    )
-    methods: tuple[str, ...] = Field(default=(), description="Rectifiers, by name or path.")
-    options: OptionSets = Field(
-        default_factory=dict,
-        description="Options of a rectifier by its name: one set, or a list of sets, each a row of its own.",
-    )
-    poses: Names = Field(
-        default=("exact",),
-        description="How well the rectifiers know the relative pose: exact, perturbed, or estimated from "
-        "the images. Of photographs: calibrated, or estimated.",
-    )
-    seeds: Annotated[tuple[int, ...], Field(min_length=1)] = Field(default=(0,), description="Repetitions.")
-    metrics: tuple[str, ...] = Field(
-        default=("geometry", "row_error", "timing"),
-        description="What is measured: metrics, by name or path. `geometry` is all that needs neither image "
-        "nor match. Nothing is rendered or computed that none of these asks for.",
-    )
-    figures: tuple[FigureName, ...] | None = Field(
-        default=None, description="Figures to draw; None draws the usual ones."
-    )
-    claims: tuple[Claim, ...] = Field(default=(), description="What is claimed somewhere, to be judged.")
-    stated_seconds: Mapping[Literal["pose", "fit", "warp"], float] = Field(
-        default_factory=dict, description="Times somebody else stated, to stand beside the measured ones."
-    )
+    name: Slug
+    """Name on the command line and of the folder."""
+    title: str
+    """Heading of the page."""
+    description: str = ""
+    """A paragraph under the heading."""
+    scenes: tuple[str, ...] = ()
+    """Scenes, by name or path."""
+    rigs: tuple[str, ...] = ()
+    """Rigs, by name or path."""
+    motions: Names = ("as-calibrated",)
+    """How the right camera stands to the left."""
+    pairs: tuple[PairName, ...] = ()
+    """Pairs of (scene, rig, motion) in the place of scenes × rigs × motions."""
+    groups: tuple[Group, ...] = ()
+    """Parts, in the place of one grid."""
+    photographs: bool = False
+    """Whether the pairs are photographs, found in a folder that each run names; what is measured then
+    needs no truth."""
+    methods: tuple[str, ...] = ()
+    """Rectifiers, by name or path."""
+    options: OptionSets = Field(default_factory=dict)
+    """Options of a rectifier by its name: one set, or a list of sets, each a row of its own."""
+    poses: Names = ("exact",)
+    """How well the rectifiers know the relative pose: exact, perturbed, or estimated from the images. Of
+    photographs: calibrated, or estimated."""
+    seeds: Annotated[tuple[int, ...], Field(min_length=1)] = (0,)
+    """Repetitions."""
+    metrics: tuple[str, ...] = ("geometry", "row_error", "timing")
+    """What is measured: metrics, by name or path. `geometry` is all that needs neither image nor match.
+    Nothing is rendered or computed that none of these asks for."""
+    figures: tuple[FigureName, ...] | None = None
+    """Figures to draw; None draws the usual ones."""
+    claims: tuple[Claim, ...] = ()
+    """What is claimed somewhere, to be judged."""
+    stated_seconds: Mapping[Literal["pose", "fit", "warp"], float] = Field(default_factory=dict)
+    """Times somebody else stated, to stand beside the measured ones."""
 
     @property
     def pair_source(self) -> PairSource:
         """Where its pairs come from."""
-        return self._kind_of_source(self.parts)
-
-    @property
-    def _kind_of_source(self) -> type[PairSource]:
-        if self.photographs:
-            return Photographed
-        return Grouped if self.groups else StatedPairs if self.pairs else Grid
+        return Photographed(self.parts) if self.photographs else Rendered(self.parts)
 
     @property
     def parts(self) -> tuple[StatedPart, ...]:
@@ -191,10 +203,11 @@ class Report(Rendering, GivenMatches, CellLimits):
 
     @model_validator(mode="after")
     def _states_its_pairs_in_one_way(self) -> Report:
-        source = self._kind_of_source
-        if beside := [name for name in source.excludes if getattr(self, name)]:
-            raise ValueError(f"{beside[0]} stand beside {source.stated_by}; {source.expected}")
-        if missing := [name for name in source.needs if not getattr(self, name)]:
+        stated_by = next((name for name in _STATING_PAIRS if getattr(self, name)), "scenes")
+        needs, excludes, instead = _STATING_PAIRS[stated_by]
+        if beside := [name for name in excludes if getattr(self, name)]:
+            raise ValueError(f"{beside[0]} stand beside {stated_by}; expected {instead}")
+        if missing := [name for name in needs if not getattr(self, name)]:
             raise ValueError(f"{missing[0]} are missing; expected at least one, or groups")
         names = [group.name for group in self.groups]
         if len(set(names)) < len(names) or "" in names:
@@ -206,7 +219,7 @@ class Report(Rendering, GivenMatches, CellLimits):
     @model_validator(mode="after")
     def _has_poses_that_can_be(self) -> Report:
         foreign = [pose for pose in self.poses if pose not in (CALIBRATED, ESTIMATED)]
-        if foreign and not self._kind_of_source.has_truth:
+        if foreign and self.photographs:
             raise ValueError(f"pose of photographs is {foreign[0]}; expected {CALIBRATED} or {ESTIMATED}")
         return self
 

@@ -7,26 +7,7 @@ from typing import Any
 from pydantic import BaseModel, ConfigDict
 
 from rectbench.pairs.spec import PairSpec
-
-
-class Cell(BaseModel):
-    """Which cell of which report: what its row and its random numbers are named after."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
-    report: str
-    scene: str
-    rig: str
-    motion: str
-    pose: str
-    method: str
-    options: str
-    """The options given, as canonical JSON; "{}" where all are the method's own."""
-    seed: int
-
-
-IDENTITY = tuple(Cell.model_fields)
-"""The columns that say which cell a row is; `status` and `reason` follow, then the metrics."""
+from rectbench.plugins.result import Cell
 
 
 class CellTask(BaseModel):

@@ -1,44 +1,26 @@
-"""What a rectification is scored by: one file a metric, their catalogue, and what scores by them.
+"""What a rectification is scored by: one file a metric, and what scores by them.
 
 Imports plugins and what is below.
 """
 
-from rectbench.metrics.analyses.frame import frame_costs
-from rectbench.metrics.analyses.uncertainty import Uncertainty, uncertainty
-from rectbench.metrics.coverage import coverage, dense_pixels
-from rectbench.metrics.distortion import Distortion, distortion, distortion_of
-from rectbench.metrics.energy import energy_convex_share
-from rectbench.metrics.log_distortion import log_distortion
-from rectbench.metrics.order import order
-from rectbench.metrics.pose import Pose
-from rectbench.metrics.reconstruction import reconstruction_scores
-from rectbench.metrics.row_error import RowError, row_error
-from rectbench.metrics.row_error_board import BoardRowError
-from rectbench.metrics.row_error_features import FeatureRowError
-from rectbench.metrics.sampling import every_pixel, per_pixel
-from rectbench.metrics.timing import Timing
-from rectbench.warps.jacobians import Jacobians
-
-__all__ = [
-    "BoardRowError",
-    "Distortion",
-    "FeatureRowError",
-    "Jacobians",
-    "Pose",
-    "RowError",
-    "Timing",
-    "Uncertainty",
-    "coverage",
-    "dense_pixels",
-    "distortion",
-    "distortion_of",
-    "energy_convex_share",
-    "every_pixel",
-    "frame_costs",
-    "log_distortion",
-    "order",
-    "per_pixel",
-    "reconstruction_scores",
-    "row_error",
-    "uncertainty",
-]
+from rectbench.metrics.analyses.frame import frame_costs as frame_costs
+from rectbench.metrics.analyses.uncertainty import Uncertainty as Uncertainty
+from rectbench.metrics.analyses.uncertainty import uncertainty as uncertainty
+from rectbench.metrics.coverage import coverage as coverage
+from rectbench.metrics.coverage import dense_pixels as dense_pixels
+from rectbench.metrics.distortion import Distortion as Distortion
+from rectbench.metrics.distortion import distortion as distortion
+from rectbench.metrics.distortion import distortion_of as distortion_of
+from rectbench.metrics.energy import energy_convex_share as energy_convex_share
+from rectbench.metrics.log_distortion import log_distortion as log_distortion
+from rectbench.metrics.order import order as order
+from rectbench.metrics.pose import Pose as Pose
+from rectbench.metrics.reconstruction import reconstruction_scores as reconstruction_scores
+from rectbench.metrics.row_error import RowError as RowError
+from rectbench.metrics.row_error import row_error as row_error
+from rectbench.metrics.row_error_board import BoardRowError as BoardRowError
+from rectbench.metrics.row_error_features import FeatureRowError as FeatureRowError
+from rectbench.metrics.sampling import every_pixel as every_pixel
+from rectbench.metrics.sampling import per_pixel as per_pixel
+from rectbench.metrics.timing import Timing as Timing
+from rectbench.warps.jacobians import Jacobians as Jacobians

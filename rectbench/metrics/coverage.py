@@ -39,10 +39,7 @@ def coverage(rect: Rectification, rig: Rig) -> dict[str, float]:
     >>> 0 < kept["coverage_overlap"] <= 1
     True
     """
-    sides = (
-        (rect.left, rig.right, rig.R_right_left),
-        (rect.right, rig.left, rig.R_right_left.T),
-    )
+    sides = ((rect.left, rig.right, rig.R_right_left), (rect.right, rig.left, rig.R_right_left.T))
     shares = np.array([_kept_shares(warp, other, R, rect.size) for warp, other, R in sides])
     pixels, solid_angle, overlap = shares.mean(axis=0)
     valid = [rect.valid("left").mean(), rect.valid("right").mean()]

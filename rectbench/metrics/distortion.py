@@ -168,35 +168,32 @@ class DistortionMetric(Metric):
     """Distortion L at the evaluation pixels, under each protocol."""
 
     name, topic = "distortion", "Distortion"
-    columns = (
+    columns = tuple(
         distortion_column(
-            "distortion_native",
-            "distortion, native",
-            "The paper's mean L per pixel, at the scale each method's authors choose. An image shrunk to "
-            "nothing has L = 1.",
+            f"distortion_{protocol}",
+            f"distortion, {protocol}",
+            meaning,
             tolerance=Tolerance(0.01, 1e-6),
-            shown="summary",
+            shown=shown,
             promised=True,
-            panel="native: as its authors scale it",
-        ),
-        distortion_column(
-            "distortion_rescaled",
-            "distortion, rescaled",
-            "L after the one scale that is best for it.",
-            tolerance=Tolerance(0.01, 1e-6),
-            shown="page",
-            promised=True,
-            panel="rescaled: best single scale",
-        ),
-        distortion_column(
-            "distortion_stretched",
-            "distortion, stretched",
-            "L after the best scales of width and of height.",
-            tolerance=Tolerance(0.01, 1e-6),
-            shown="summary",
-            promised=True,
-            panel="stretched: best width and height",
-        ),
+            panel=f"{protocol}: {how}",
+        )
+        for protocol, shown, how, meaning in (
+            (
+                "native",
+                "summary",
+                "as its authors scale it",
+                "The paper's mean L per pixel, at the scale each method's authors choose. An image shrunk to "
+                "nothing has L = 1.",
+            ),
+            ("rescaled", "page", "best single scale", "L after the one scale that is best for it."),
+            (
+                "stretched",
+                "summary",
+                "best width and height",
+                "L after the best scales of width and of height.",
+            ),
+        )
     )
 
     def compute(self, case: Case) -> dict[str, float]:

@@ -25,7 +25,7 @@ def log_distortion(jacobians: Jacobians) -> dict[str, float]:
     """
     large, small = singular_values(*entries(jacobians.both), np)
     if not large.size or not (small > 0).all():
-        return dict.fromkeys(("log_distortion", "log_distortion_area", "log_distortion_anisotropy"), math.nan)
+        return {column.key: math.nan for column in LogDistortion.columns}
     size = (np.log(large) + np.log(small)) / 2
     squeeze = (np.log(large) - np.log(small)) / 2
     area, anisotropy = float(np.std(size)), float(np.sqrt(np.square(squeeze).mean()))

@@ -31,9 +31,7 @@ def order(rect: Rectification, rig: Rig) -> dict[str, float]:
     sides = [_side(warp, R, rect.size) for warp, R in zip((rect.left, rect.right), rotations, strict=True)]
     along, across, upright, closure = (np.concatenate(values) for values in zip(*sides, strict=True))
     if not along.size:
-        return dict.fromkeys(
-            ("order_du_dgamma_min", "order_dv_dbeta_min", "order_upright", "closure_px"), math.nan
-        )
+        return {column.key: math.nan for column in Order.columns}
     return {
         "order_du_dgamma_min": float(along.min()),
         "order_dv_dbeta_min": float(across.min()),

@@ -58,7 +58,7 @@ def needs_of(asked: Iterable[str | Path]) -> frozenset[Need]:
 def digests_of(asked: Iterable[str | Path]) -> dict[str, str]:
     """The digests of these metrics' sources by their names, for the key of a cell.
 
-    Built-in ones need none: the key covers what `rectbench.metrics` imports, and these are all of them.
+    Empty of the built-in ones: the key covers what `rectbench.metrics` imports, and these are all of them.
     """
     plugins = metrics_of(asked).values()
     return {p.name: "" if p.path.resolve().is_relative_to(PACKAGE) else p.digest for p in plugins}

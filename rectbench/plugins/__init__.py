@@ -1,1 +1,1 @@
-"""Contracts of rectifiers and scenes, what a third party fills in. Imports rendering, warps and below."""
+"""Contracts of rectifiers, scenes, metrics and figures, and what these get. Imports rendering and below."""

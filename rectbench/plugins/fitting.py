@@ -45,11 +45,8 @@ def check_result(method: str, result: object, problem: Problem) -> None:
     """Raise InvalidResult unless `result` is a rectification of the problem's rig with usable numbers."""
     if not isinstance(result, Rectification):
         raise InvalidResult(f"{method} returned {type(result).__name__}; expected a Rectification")
-    sides = (
-        ("left", problem.rig.left, problem.pixels_left),
-        ("right", problem.rig.right, problem.pixels_right),
-    )
-    for side, camera, pixels in sides:
+    for side in ("left", "right"):
+        camera, pixels = getattr(problem.rig, side), getattr(problem, f"pixels_{side}")
         warp = getattr(result, side)
         if not isinstance(warp, Warp):
             raise InvalidResult(f"{method}: the {side} warp is {type(warp).__name__}; expected a Warp")

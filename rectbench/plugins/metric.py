@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import inspect
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
@@ -13,7 +12,7 @@ from typing import Any, ClassVar, Literal, Protocol, TypeVar
 from rectbench.errors import InvalidInput
 from rectbench.images.stereo_pair import StereoPair
 from rectbench.matching import BoardMatches, PoseEstimate
-from rectbench.registry.kind import Described, Kind
+from rectbench.registry.kind import Described, Kind, described_object
 from rectbench.rendering.truth import Truth
 from rectbench.rigs import Rig
 from rectbench.types import Matches
@@ -175,6 +174,9 @@ class Known(Protocol):
         Raises PoseNotFound where photographs tell no pose.
         """
 
+    def shown_matches(self) -> Matches:
+        """Correspondences that pictures choose from, the most certain ones that are known."""
+
     def pose_seconds(self) -> float:
         """Seconds from the two images, in memory, to their pose, warm."""
 
@@ -242,20 +244,15 @@ class Metric(ABC):
 
 
 def _described(value: Any) -> Described[Metric] | None:
-    """A metric, or the only instance of a class of them."""
-    if inspect.isclass(value) and issubclass(value, Metric):
-        if inspect.isabstract(value):
-            return None
-        value = value()
-    if not isinstance(value, Metric):
-        return None
-    for attribute, kind in (("name", str), ("topic", str), ("columns", tuple)):
-        if not isinstance(found := getattr(value, attribute, None), kind) or not found:
-            raise InvalidInput(f"{type(value).__name__}.{attribute} is {found!r}; expected a {kind.__name__}")
-    for column in value.columns:
-        if not (isinstance(column, Column) and column.key.isidentifier()):
-            raise InvalidInput(f"{type(value).__name__}.columns has {column!r}; expected a Column with a key")
-    return Described(value.name, (inspect.getdoc(type(value)) or "").partition("\n")[0], value)
+    described = described_object(value, Metric, "topic")
+    if described:
+        kind, columns = type(described.value).__name__, getattr(described.value, "columns", None)
+        if not isinstance(columns, tuple) or not columns:
+            raise InvalidInput(f"{kind}.columns is {columns!r}; expected a tuple")
+        for column in columns:
+            if not (isinstance(column, Column) and column.key.isidentifier()):
+                raise InvalidInput(f"{kind}.columns has {column!r}; expected a Column with a key")
+    return described
 
 
 METRICS: Kind[Metric] = Kind(

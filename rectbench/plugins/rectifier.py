@@ -14,7 +14,7 @@ from typing_extensions import TypeVar
 
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
-from rectbench.registry.kind import Described, Kind
+from rectbench.registry.kind import Described, Kind, described_object
 from rectbench.rigs import Rig
 from rectbench.types import FloatArray, Images, Matches
 from rectbench.warps.frame import rectifying_rotations
@@ -93,14 +93,8 @@ def pose_problem(
 
     Of given pixels each image uses those its lens sees; InvalidInput where it sees none.
     """
-    return Problem(
-        rig=rig,
-        pixels_left=_pixels_of(rig.left, pixels, "left"),
-        pixels_right=_pixels_of(rig.right, pixels, "right"),
-        known_matches=matches,
-        images=images,
-        seed=seed,
-    )
+    left, right = (_pixels_of(getattr(rig, side), pixels, side) for side in ("left", "right"))
+    return Problem(rig, left, right, matches, images, seed)
 
 
 def _pixels_of(camera: Camera, pixels: FloatArray | None, side: str) -> FloatArray:
@@ -181,21 +175,11 @@ def _is_options(value: object) -> bool:
 
 
 def _described(value: Any) -> Described[Rectifier] | None:
-    """A rectifier: an instance, or a class of which one is made."""
-    if inspect.isclass(value) and issubclass(value, Rectifier):
-        if inspect.isabstract(value) and "name" not in vars(value):
-            return None  # a base class for the file's own use
-        value = value()
-    if not isinstance(value, Rectifier):
-        return None
-    name = getattr(value, "name", None)
-    if not isinstance(name, str) or not name:
-        raise InvalidInput(f"{type(value).__name__}.name is {name!r}; expected the method's name")
-    if not _is_options(value.Options):
-        raise InvalidInput(
-            f"{type(value).__name__}.Options is {value.Options!r}; expected a subclass of Options"
-        )
-    return Described(name, (inspect.getdoc(type(value)) or "").partition("\n")[0], value)
+    described = described_object(value, Rectifier)
+    if described and not _is_options(options := described.value.Options):
+        kind = type(described.value).__name__
+        raise InvalidInput(f"{kind}.Options is {options!r}; expected a subclass of Options")
+    return described
 
 
 METHODS: Kind[Rectifier] = Kind(

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import Any, Generic, NamedTuple, TypeVar
+
+from rectbench.errors import InvalidInput
 
 T = TypeVar("T")
 
@@ -17,6 +20,24 @@ class Described(NamedTuple, Generic[T]):
     name: str
     summary: str
     value: T
+
+
+def described_object(value: Any, base: Any, *texts: str) -> Described[Any] | None:
+    """A module's value as a plugin: an object of the class `base`, or one made of a class; else None.
+
+    Its summary is the first line of its class's docstring. Raises InvalidInput where its `name` or one of
+    the attributes `texts` is no text.
+    """
+    if inspect.isclass(value) and issubclass(value, base):
+        if inspect.isabstract(value) and "name" not in vars(value):
+            return None  # a base class for the file's own use
+        value = value()
+    if not isinstance(value, base):
+        return None
+    for attribute in ("name", *texts):
+        if not isinstance(found := getattr(value, attribute, None), str) or not found:
+            raise InvalidInput(f"{type(value).__name__}.{attribute} is {found!r}; expected a text")
+    return Described(value.name, (inspect.getdoc(type(value)) or "").partition("\n")[0], value)
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,10 +73,10 @@ class Plugin(Generic[T]):
     kind: Kind[T]
     name: str
     summary: str
+    value: T
     path: Path
     """The file it comes from."""
     find_digest: Callable[[], str]
-    value: T
 
     @cached_property
     def digest(self) -> str:

@@ -11,6 +11,7 @@ import importlib
 import importlib.metadata
 import importlib.util
 import inspect
+import os
 import sys
 import traceback
 from collections.abc import Callable, Iterator, Mapping
@@ -23,7 +24,7 @@ from typing import Any, Generic, TypeVar
 from rectbench.errors import InvalidInput, UnknownName
 from rectbench.registry import beside
 from rectbench.registry.beside import PRIVATE, load_beside
-from rectbench.registry.kind import Described, Kind, Plugin
+from rectbench.registry.kind import Kind, Plugin
 from rectbench.registry.sources import plugin_digest
 from rectbench.store.keys import code_digest, digest, file_digest
 
@@ -159,14 +160,14 @@ def _announced(kind: Kind[T], point: importlib.metadata.EntryPoint) -> list[Plug
     if isinstance(loaded, ModuleType):
         return _require(kind, _plugins_in(kind, loaded, path, lambda: source))
     described = kind.described(loaded)
-    return _require(kind, [] if described is None else [_plugin(kind, described, path, lambda: source)])
+    return _require(kind, [] if described is None else [Plugin(kind, *described, path, lambda: source)])
 
 
 def _from_file(kind: Kind[T], path: Path) -> list[Plugin[T]]:
     if read := kind.by_suffix.get(path.suffix):
         described, files = read(path)
-        source = digest({str(file): file_digest(file) for file in files})
-        return [_plugin(kind, described, path, lambda: source)]
+        source = digest({os.path.relpath(file, path.parent): file_digest(file) for file in files})
+        return [Plugin(kind, *described, path, lambda: source)]
     try:
         source = plugin_digest(path)
     except SyntaxError:
@@ -186,14 +187,10 @@ def _load_file(kind: Kind[T], path: Path, source: str) -> list[Plugin[T]]:
 def _plugins_in(kind: Kind[T], module: ModuleType, path: Path, source: Callable[[], str]) -> list[Plugin[T]]:
     own = {id(value): value for value in vars(module).values() if _is_own(value, module)}
     return [
-        _plugin(kind, described, path, source)
+        Plugin(kind, *described, path, source)
         for value in own.values()
         if (described := kind.described(value)) is not None
     ]
-
-
-def _plugin(kind: Kind[T], described: Described[T], path: Path, source: Callable[[], str]) -> Plugin[T]:
-    return Plugin(kind, described.name, described.summary, path, source, described.value)
 
 
 def _is_own(value: Any, module: ModuleType) -> bool:

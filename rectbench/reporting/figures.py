@@ -16,7 +16,7 @@ from rectbench.reporting.asked import wanted_figures, without_set_apart
 from rectbench.reporting.names import named, slug
 from rectbench.reporting.style import PAGE_INCHES, STYLE, encode, looks
 from rectbench.runs.run import Run
-from rectbench.store.keys import code_digest, digest, versions
+from rectbench.store.keys import code_digest, digest, file_digest, versions
 from rectbench.writing import write_atomically
 
 if TYPE_CHECKING:
@@ -46,7 +46,7 @@ class PlacedDrawing:
         made_from = json.dumps(self.drawing.made_from, default=repr, sort_keys=True)
         # What answers for pictures is no part of the figure's own code.
         shared = code_digest("rectbench.reporting.figures", "rectbench.reporting.sources")
-        drawn_with = versions("matplotlib")["matplotlib"]
+        drawn_with = [versions("matplotlib")["matplotlib"], file_digest(STYLE)]
         return digest([self.name, self.drawing.dpi, made_from, self.made_by, shared, drawn_with])
 
     def path(self, extension: str) -> str:
@@ -151,7 +151,7 @@ def _draw(folder: Path, placed: PlacedDrawing) -> None:
 
     with matplotlib.rc_context():
         matplotlib.rcdefaults()  # a user's own matplotlibrc changes nothing here
-        matplotlib.rcParams.update(STYLE)
+        matplotlib.rc_file(STYLE, use_default_template=False)
         figure = placed.drawing.draw()
         if figure.get_layout_engine() is not None:
             figure.draw_without_rendering()

@@ -1,10 +1,10 @@
-"""What the files of tables and figures are called."""
+"""What pairs are called on axes and in tables, and the files of tables and figures."""
 
 from __future__ import annotations
 
 import re
 
-from rectbench.plugins.figure import Part
+from rectbench.plugins.result import Part
 
 
 def slug(*parts: str) -> str:
@@ -15,3 +15,17 @@ def slug(*parts: str) -> str:
 def named(part: Part, stem: str, *parts: str) -> str:
     """A file's stem that holds the name of the report's part, once."""
     return slug(stem, "" if part.group == stem else part.group, *parts)
+
+
+def pair_labels(run: Part) -> dict[tuple[str, str, str], str]:
+    """A label of each (scene, rig, motion): scene over rig; the motion where that leaves two alike."""
+    places = list(dict.fromkeys(r.place for r in run.results))
+    short = {place: f"{place[0]}\n{place[1]}" for place in places}
+    if len(set(short.values())) == len(places):
+        return short
+    return {place: f"{label}\n{place[2]}" for place, label in short.items()}
+
+
+def one_line(label: str) -> str:
+    """A pair's label in a table."""
+    return label.replace("\n", ", ")

@@ -9,7 +9,7 @@ from typing import Any
 from rectbench.plugins.figure import Sources
 from rectbench.progress import Progress
 from rectbench.reporting.figures import EXTENSIONS, draw_changed, placed_drawings
-from rectbench.reporting.page.page import render_page
+from rectbench.reporting.page import render_page
 from rectbench.reporting.sources import sources_of
 from rectbench.reporting.tables.part_tables import all_tables
 from rectbench.reporting.tables.table import SPELLINGS, Table
@@ -53,12 +53,10 @@ def write_report(run_dir: Path, *, progress: Progress | None = None, sources: So
 
 
 def _write_table(folder: Path, table: Table) -> list[str]:
-    paths = []
-    for extension, spell in SPELLINGS.items():
-        path = f"tables/{table.name}.{extension}"
-        write_atomically(folder / path, spell(table))
-        paths.append(path)
-    return paths
+    texts = {f"tables/{table.name}.{extension}": spell(table) for extension, spell in SPELLINGS.items()}
+    for path, text in texts.items():
+        write_atomically(folder / path, text)
+    return list(texts)
 
 
 def _read_manifest(folder: Path) -> dict[str, Any]:

@@ -7,13 +7,15 @@ from functools import cached_property
 
 from rectbench.errors import InvalidInput, InvalidResult, RectbenchError
 from rectbench.experiments.execution.cells import cell_inputs, problem_of
-from rectbench.experiments.tasks import Cell, CellTask
+from rectbench.experiments.tasks import CellTask
+from rectbench.matching import Reconstruction, reconstruct
 from rectbench.metrics import Jacobians, distortion, distortion_of
 from rectbench.pairs.opening import open_pair
 from rectbench.pairs.pair import Pair
-from rectbench.plugins.figure import Cloud, Result, Sources
+from rectbench.plugins.figure import Sources
 from rectbench.plugins.fitting import checked_options, fit
 from rectbench.plugins.rectifier import METHODS
+from rectbench.plugins.result import Cell, Result
 from rectbench.registry import registry
 from rectbench.runs.record import RUN_FILE
 from rectbench.runs.run import Run
@@ -70,9 +72,7 @@ class _Recalled:
             self._fitted[result.cell] = rectification
         return self._fitted[result.cell]
 
-    def reconstruction(self, result: Result) -> Cloud:
-        from rectbench.matching.dense.reconstruction import reconstruct
-
+    def reconstruction(self, result: Result) -> Reconstruction:
         images = self.pair(result).images
         return reconstruct(self.rectification(result), images.left, images.right)
 

@@ -5,15 +5,21 @@ from __future__ import annotations
 import io
 import itertools
 from collections.abc import Iterator, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from rectbench.plugins.figure import Look
 from rectbench.plugins.rectifier import METHODS
 from rectbench.registry import registry
 from rectbench.reporting.tables.numbers import decade
+from rectbench.types import BoolArray, FloatArray
 
 if TYPE_CHECKING:
     from matplotlib.axis import Axis
+    from matplotlib.colorbar import Colorbar
+    from matplotlib.colors import Colormap, Normalize
     from matplotlib.figure import Figure
 
 COLUMN_INCHES = 3.5
@@ -24,48 +30,11 @@ INK = "#222222"
 FAINT = "#8a8a8a"
 PAPER = "#ffffff"
 LOST = "#d9d9d9"
+BEYOND = "#8c1d40"
+"""The colours of what is not there, and of what lies beyond the end of a scale."""
 
-STYLE: dict[Any, Any] = {
-    "font.family": "DejaVu Sans",
-    "font.size": 7,
-    "axes.titlesize": 7,
-    "axes.titlelocation": "left",
-    "axes.titlepad": 4,
-    "axes.labelsize": 7,
-    "axes.labelpad": 2,
-    "axes.edgecolor": INK,
-    "axes.linewidth": 0.6,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.axisbelow": True,
-    "axes.grid": False,
-    "grid.color": "#dddddd",
-    "grid.linewidth": 0.5,
-    "xtick.labelsize": 6.5,
-    "ytick.labelsize": 6.5,
-    "xtick.major.width": 0.6,
-    "ytick.major.width": 0.6,
-    "xtick.minor.width": 0.4,
-    "ytick.minor.width": 0.4,
-    "legend.fontsize": 7,
-    "legend.frameon": False,
-    "legend.handlelength": 1.2,
-    "legend.handletextpad": 0.5,
-    "legend.columnspacing": 1.4,
-    "lines.linewidth": 1.0,
-    "figure.facecolor": PAPER,
-    "figure.constrained_layout.w_pad": 0.02,
-    "figure.constrained_layout.h_pad": 0.02,
-    "figure.constrained_layout.wspace": 0.02,
-    "figure.constrained_layout.hspace": 0.02,
-    "savefig.facecolor": PAPER,
-    "hatch.linewidth": 0.4,
-    "text.parse_math": False,
-    "pdf.fonttype": 42,
-    "ps.fonttype": 42,
-    "svg.fonttype": "path",
-    "svg.hashsalt": "rectbench",
-}
+STYLE = Path(__file__).with_name("templates") / "rectbench.mplstyle"
+"""The rest of how figures look, in matplotlib's words."""
 
 _BUILT_IN = METHODS.packages
 _COLOURS = (
@@ -114,6 +83,37 @@ def plain_log_ticks(axis: Axis) -> None:
     axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if short else (1.0,)))
     axis.set_major_formatter(FuncFormatter(lambda value, _: decade(value)))
     axis.set_minor_formatter(NullFormatter())
+
+
+def shaded(values: FloatArray, lens: BoolArray, norm: Normalize) -> FloatArray:
+    """Colours [h, w, 4] of values [h, w], NaN having its own; white where the lens shows nothing."""
+    colours = shades()
+    found: FloatArray = colours(norm(values))
+    found[np.isnan(values)] = colours.get_bad()
+    found[~lens] = (1.0, 1.0, 1.0, 1.0)
+    return found
+
+
+def shades() -> Colormap:
+    """Viridis, with colours of their own for what lies beyond the scale and for what is not mapped."""
+    from matplotlib import colormaps
+
+    return colormaps["viridis"].with_extremes(over=BEYOND, bad=LOST)
+
+
+def add_colour_bar(
+    figure: Figure,
+    place: tuple[float, float, float, float],
+    norm: Normalize,
+    colours: Colormap | str,
+    extend: str = "both",
+) -> Colorbar:
+    """The scale of the colours, at a place (left, bottom, width, height) in shares of the figure."""
+    from matplotlib.cm import ScalarMappable
+
+    bar = figure.colorbar(ScalarMappable(norm, colours), cax=figure.add_axes(place), extend=extend)
+    bar.outline.set_linewidth(0.4)
+    return bar
 
 
 def encode(figure: Figure, extension: str, dpi: int) -> bytes:

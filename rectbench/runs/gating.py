@@ -15,12 +15,12 @@ import pandas as pd
 
 from rectbench.errors import InvalidInput, UnknownName
 from rectbench.experiments.spec import REPORTS
-from rectbench.experiments.tasks import IDENTITY, Cell
 from rectbench.pairs.spec import ESTIMATED
 from rectbench.plugins.metric import Column
+from rectbench.plugins.result import IDENTITY, Cell, Result
 from rectbench.registry import registry
 from rectbench.runs.record import read_record
-from rectbench.runs.rows import Row, read_rows
+from rectbench.runs.rows import read_rows
 from rectbench.runs.run import read_run
 from rectbench.writing import write_atomically
 
@@ -108,7 +108,7 @@ def gate(run_dir: Path, path: Path) -> Gating:
     return gating
 
 
-def _compare(known: Row, now: Row, columns: Sequence[Column], gating: Gating) -> None:
+def _compare(known: Result, now: Result, columns: Sequence[Column], gating: Gating) -> None:
     if known.status != now.status:
         kind = gating.improvements if now.ok else gating.regressions
         because = f" ({now.reason})" if now.reason else ""
@@ -141,12 +141,12 @@ def _read_accepted(path: Path) -> pd.DataFrame:
     return table.assign(report="")
 
 
-def _by_cell(rows: Iterable[Row]) -> dict[Cell, Row]:
+def _by_cell(rows: Iterable[Result]) -> dict[Cell, Result]:
     """The rows by what they are of, whichever report they stand in."""
     return {row.cell.model_copy(update={"report": ""}): row for row in rows}
 
 
-def _name(row: Row) -> str:
+def _name(row: Result) -> str:
     variant = ",".join(f"{k}={v}" for k, v in row.options.items())
     place = f"{row.scene}/{row.rig}/{row.motion}/{row.pose}/seed {row.seed}"
     return f"{row.cell.method}{variant and ' '}{variant} on {place}"

@@ -16,8 +16,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from rectbench.experiments.claims import Claim, Statement, Verdict
+from rectbench.plugins.result import Result
 from rectbench.runs.bootstrap import Statistic, interval, stacked
-from rectbench.runs.rows import Row
 from rectbench.types import FloatArray
 
 RESAMPLES = 4000
@@ -30,14 +30,11 @@ Place = tuple[str, str, str, str, int]
 class Measured:
     """What the rows say about one statement."""
 
-    label: str
-    clause: str
-    """The part of the claim it measures; empty where the claim is one."""
+    statement: Statement
     mean: float
     low: float
     high: float
     """The 95 % bootstrap interval."""
-    expected: str
     verdict: Verdict
     pairs_held: int
     """On how many pairs the mean over seeds is within the bounds."""
@@ -52,21 +49,24 @@ class Measured:
 class Judged:
     """A claim and its verdict."""
 
-    name: str
-    says: str
+    claim: Claim
     verdict: Verdict
-    because: str
     tests: tuple[Measured, ...]
+
+    @property
+    def because(self) -> str:
+        """Why it is so, as the claim states for this verdict."""
+        return self.claim.because.get(self.verdict, "")
 
 
 def judged_claims(
-    claims: Iterable[Claim], rows: Sequence[Row], columns: Collection[str]
+    claims: Iterable[Claim], rows: Sequence[Result], columns: Collection[str]
 ) -> tuple[Judged, ...]:
     """Judge claims by the rows of a run, whose table has the `columns`."""
     return tuple(_judged(claim, rows, columns) for claim in claims)
 
 
-def _judged(claim: Claim, rows: Sequence[Row], columns: Collection[str]) -> Judged:
+def _judged(claim: Claim, rows: Sequence[Result], columns: Collection[str]) -> Judged:
     # A column that nobody asked for is no failure.
     tests = tuple(_measured(s, rows if s.metric in columns else ()) for s in claim.statements)
     clauses: dict[str, set[Verdict]] = {}
@@ -78,10 +78,10 @@ def _judged(claim: Claim, rows: Sequence[Row], columns: Collection[str]) -> Judg
         (verdict,) = verdicts
     elif "not held" in verdicts:
         verdict = "not held"
-    return Judged(claim.name, claim.says, verdict, claim.because.get(verdict, ""), tests)
+    return Judged(claim, verdict, tests)
 
 
-def _measured(statement: Statement, rows: Sequence[Row]) -> Measured:
+def _measured(statement: Statement, rows: Sequence[Result]) -> Measured:
     by_pair, failed = _numbers(statement, rows)
     cells = sum(map(len, by_pair))
     mean = low = high = math.nan
@@ -92,19 +92,8 @@ def _measured(statement: Statement, rows: Sequence[Row]) -> Measured:
         verdict = _verdict(statement, low, high, failed)
     if cells == 1:  # one number has no interval
         low = high = math.nan
-    return Measured(
-        label=statement.label,
-        clause=statement.clause,
-        mean=mean,
-        low=low,
-        high=high,
-        expected=statement.expected,
-        verdict=verdict,
-        pairs_held=_pairs_held(statement, by_pair),
-        pairs=len(by_pair),
-        cells=cells,
-        failed=failed,
-    )
+    held = _pairs_held(statement, by_pair)
+    return Measured(statement, mean, low, high, verdict, held, len(by_pair), cells, failed)
 
 
 def _pairs_needed(statement: Statement) -> float:
@@ -112,7 +101,7 @@ def _pairs_needed(statement: Statement) -> float:
     return max(1.0, statement.above or 0.0) if statement.measure == "wins" else 1.0
 
 
-def _numbers(statement: Statement, rows: Sequence[Row]) -> tuple[list[FloatArray], int]:
+def _numbers(statement: Statement, rows: Sequence[Result]) -> tuple[list[FloatArray], int]:
     """The numbers [cells, columns] a statement stands on, one array a pair, and how many cells have none."""
     others = _others(statement, rows)
     found: dict[tuple[str, ...], list[list[float]]] = {}
@@ -128,7 +117,7 @@ def _numbers(statement: Statement, rows: Sequence[Row]) -> tuple[list[FloatArray
     return [np.array(numbers) for numbers in found.values()], failed
 
 
-def _numbers_of(row: Row, others: Sequence[Row], statement: Statement) -> list[float]:
+def _numbers_of(row: Result, others: Sequence[Result], statement: Statement) -> list[float]:
     own, rivals = _value(row, statement.metric), [_value(other, statement.metric) for other in others]
     if statement.measure == "value":
         return [own]
@@ -141,7 +130,7 @@ def _numbers_of(row: Row, others: Sequence[Row], statement: Statement) -> list[f
     return [ratio]
 
 
-def _speaks_of(row: Row, statement: Statement) -> bool:
+def _speaks_of(row: Result, statement: Statement) -> bool:
     return (
         row.cell.method == statement.method
         and row.group == statement.group
@@ -149,24 +138,24 @@ def _speaks_of(row: Row, statement: Statement) -> bool:
     )
 
 
-def _others(statement: Statement, rows: Sequence[Row]) -> dict[Place, list[Row]]:
+def _others(statement: Statement, rows: Sequence[Result]) -> dict[Place, list[Result]]:
     """The rows to compare with, by place: those of `against`, or of the rivals."""
     wanted = statement.speaks_of[1:]
     if statement.measure == "wins":  # no method is its own rival
         wanted = [(group, method) for group, method in wanted if method != statement.method]
-    found: dict[Place, list[Row]] = {}
+    found: dict[Place, list[Result]] = {}
     for row in rows:
         if (row.group, row.cell.method) in wanted:
             found.setdefault(_place(row), []).append(row)
     return found
 
 
-def _place(row: Row) -> Place:
+def _place(row: Result) -> Place:
     """Where methods are compared: the pair, and the seed."""
     return row.scene, row.rig, row.motion, row.pose, row.seed
 
 
-def _value(row: Row, metric: str) -> float:
+def _value(row: Result, metric: str) -> float:
     return row.metrics.get(metric, math.nan) if row.ok else math.nan
 
 

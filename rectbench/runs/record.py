@@ -16,11 +16,12 @@ from rectbench.experiments.execution.outcomes import Outcome
 from rectbench.experiments.execution.running import Execution
 from rectbench.experiments.planning import Plan, Selection
 from rectbench.experiments.spec import Report
-from rectbench.experiments.tasks import IDENTITY, CellTask
-from rectbench.metrics.catalogue import Catalogue, known
+from rectbench.experiments.tasks import CellTask
 from rectbench.metrics.scoring import metrics_of
 from rectbench.pairs.finding.photographs import UNREADABLE, Photographs
+from rectbench.plugins.catalogue import Catalogue, known
 from rectbench.plugins.metric import Column
+from rectbench.plugins.result import IDENTITY
 from rectbench.registry import is_path
 from rectbench.runs.machine import Machine
 from rectbench.store.keys import canonical_json

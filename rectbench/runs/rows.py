@@ -5,78 +5,19 @@ from __future__ import annotations
 import json
 from collections import Counter
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 import pandas as pd
 from pydantic import ConfigDict, Field, Json, ValidationError, field_validator
 
 from rectbench.errors import InvalidInput
 from rectbench.experiments.execution.outcomes import Status
-from rectbench.experiments.tasks import IDENTITY, Cell
+from rectbench.plugins.result import IDENTITY, Cell, Result, distinct
 from rectbench.runs.record import first_fault
 
-Item = TypeVar("Item")
-
-
-@dataclass(frozen=True)
-class Row:
-    """A method on a pair, how that ended, and what was measured."""
-
-    cell: Cell
-    method: str
-    """The method's own name, with its options where its part of the run has several variants of it."""
-    options: Mapping[str, Any]
-    """What the method was told."""
-    status: Status
-    reason: str
-    group: str
-    """The part of the report it belongs to; nothing in a report without parts."""
-    metrics: Mapping[str, float]
-    """Only what was measured: finite numbers and infinite ones."""
-    notes: Mapping[str, Any]
-    """What the method has to say of its answer."""
-
-    @property
-    def scene(self) -> str:
-        """The scene, or what the photographs are called."""
-        return self.cell.scene
-
-    @property
-    def rig(self) -> str:
-        """The rig's name."""
-        return self.cell.rig
-
-    @property
-    def motion(self) -> str:
-        """How the right camera stands to the left."""
-        return self.cell.motion
-
-    @property
-    def pose(self) -> str:
-        """How well the method knew the pose."""
-        return self.cell.pose
-
-    @property
-    def seed(self) -> int:
-        """The repetition."""
-        return self.cell.seed
-
-    @property
-    def ok(self) -> bool:
-        """Whether the cell holds a measurement."""
-        return self.status == "ok"
-
-    @property
-    def pair(self) -> tuple[str, str, str, int]:
-        """The images the cell is about: scene, rig, motion, seed."""
-        return *self.place, self.seed
-
-    @property
-    def place(self) -> tuple[str, str, str]:
-        """The pair without its seed: scene, rig, motion."""
-        return self.scene, self.rig, self.motion
+_ALIKE = {"scene", "rig", "motion", "pose", "seed", "status", "reason", "group", "notes"}
+"""What a result has as the table holds it."""
 
 
 class _StoredRow(Cell):
@@ -102,7 +43,7 @@ class _StoredRow(Cell):
         return Cell(**{name: getattr(self, name) for name in IDENTITY})
 
 
-def read_rows(table: Iterable[Mapping[Any, Any]], path: Path) -> tuple[Row, ...]:
+def read_rows(table: Iterable[Mapping[Any, Any]], path: Path) -> tuple[Result, ...]:
     """The rows of a table in the file `path`; raises InvalidInput for one that is none, with its first fault.
 
     Empty entries, NaN among them, count as left out.
@@ -119,15 +60,12 @@ def read_rows(table: Iterable[Mapping[Any, Any]], path: Path) -> tuple[Row, ...]
         for group in distinct(row.group for row in stored)
     }
     return tuple(
-        Row(
+        Result(
             cell=row.cell,
             method=labels[row.group][row.method, row.options],
             options=json.loads(row.options),
-            status=row.status,
-            reason=row.reason,
-            group=row.group,
             metrics=row.model_extra or {},
-            notes=row.notes,
+            **row.model_dump(include=_ALIKE),
         )
         for row in stored
     )
@@ -135,11 +73,6 @@ def read_rows(table: Iterable[Mapping[Any, Any]], path: Path) -> tuple[Row, ...]
 
 def _is_empty(value: Any) -> bool:
     return bool(pd.api.types.is_scalar(value) and pd.isna(value))
-
-
-def distinct(items: Iterable[Item]) -> tuple[Item, ...]:
-    """Each once, in the order of their first."""
-    return tuple(dict.fromkeys(items))
 
 
 def _method_labels(rows: Iterable[_StoredRow]) -> dict[tuple[str, str], str]:

@@ -1,1 +1,1 @@
-"""The content-addressed store and its keys."""
+"""The content-addressed store and its keys. Imports errors alone."""

@@ -157,7 +157,7 @@ def test_what_no_lens_shows_is_white_and_what_one_image_shows_alone_is_grey() ->
     found = rb.metrics.uncertainty(
         rb.rectify(believed, "conventional"), believed, covariance, depth_m=2.0, pixels=grid
     )
-    with rc_context(STYLE):
+    with rc_context(fname=STYLE):
         figure = uncertainty_maps.draw_uncertainty(found, believed.left)
     shades = np.asarray(figure.axes[0].images[0].get_array())
     seen = believed.left.unproject(grid)[1]

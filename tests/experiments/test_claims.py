@@ -193,7 +193,7 @@ def test_a_share_compares_variants_with_the_default_of_another_group() -> None:
         ({"above": 2.0, "below": 1.0}, "expected a range"),
         ({"above": math.nan}, "expected a range"),
         ({"measure": "ratio", "below": 1.0}, "`against` is for ratio and share"),
-        ({"measure": "wins", "above": 1.0}, "`rivals` are for wins"),
+        ({"measure": "wins", "above": 1.0}, "`rivals` is for wins"),
         ({"measure": "share", "against": "theirs", "above": 0.5}, "`within` is for share"),
     ],
 )

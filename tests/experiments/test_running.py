@@ -16,7 +16,7 @@ import pandas as pd
 import pytest
 
 import rectbench as rb
-from rectbench.metrics.catalogue import known
+from rectbench.plugins.catalogue import known
 from rectbench.runs.making import run
 from rectbench.runs.run import read_run
 from rectbench.store.store import STORE_VARIABLE, Store

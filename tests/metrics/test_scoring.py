@@ -11,8 +11,8 @@ import pytest
 
 import rectbench as rb
 from rectbench.experiments.execution import cells
-from rectbench.metrics.catalogue import known
 from rectbench.metrics.scoring import BUNDLES, digests_of, metrics_of, needs_of, score
+from rectbench.plugins.catalogue import known
 from rectbench.plugins.metric import METRICS
 from rectbench.registry import registry
 from rectbench.store.closure import PACKAGE, source_closure

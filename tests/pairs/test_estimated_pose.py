@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 import rectbench as rb
-from rectbench.experiments.execution.cells import problem_of
-from rectbench.experiments.execution.desk import DESK
+from rectbench.experiments.execution.cells import DESK, problem_of
 from rectbench.experiments.planning import make_plan
 from rectbench.pairs.opening import open_pair
 from rectbench.runs.making import run

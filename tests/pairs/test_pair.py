@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import rectbench as rb
-from rectbench.experiments.execution.desk import Desk
+from rectbench.experiments.execution.cells import Desk
 from rectbench.experiments.planning import make_plan
 from rectbench.pairs.opening import open_pair
 from rectbench.pairs.pair import Pair

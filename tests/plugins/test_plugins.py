@@ -65,7 +65,7 @@ BROKEN = {
     ),
     "nameless": (
         "import rectbench as rb\nclass M(rb.Rectifier):\n    def fit(self, problem, options): ...\n",
-        "name is None; expected the method's name",
+        "name is None; expected a text",
     ),
     "options": (
         "import rectbench as rb\nclass M(rb.Rectifier):\n    name = 'm'\n    Options = dict\n"

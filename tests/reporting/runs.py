@@ -37,7 +37,7 @@ SPHERE_M = 6.0
 
 
 def make_row(scene: str, rig: str, pose: str, method: str, seed: int = 0, **changes: Any) -> dict[str, Any]:
-    """One ok row with plausible numbers that hang on its identity alone."""
+    """One ok row with plausible numbers that depend on its identity alone."""
     rng = np.random.default_rng(zlib.crc32(f"{scene}{rig}{pose}{method}{seed}".encode()))
     log_distortion, native, kept = METHODS.get(method, (0.5, 0.5, 0.9))
     jitter = float(rng.uniform(0.8, 1.25))

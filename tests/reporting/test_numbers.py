@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from rectbench.metrics.catalogue import column, known
+from rectbench.plugins.catalogue import column, known
 from rectbench.plugins.metric import Column
 from rectbench.reporting.tables.numbers import decade, shown, three_digits
 

@@ -15,8 +15,8 @@ import pytest
 
 from rectbench.reporting.charts.starts import start_study
 from rectbench.reporting.figures import EXTENSIONS
+from rectbench.reporting.names import pair_labels
 from rectbench.reporting.report import write_report
-from rectbench.reporting.tables.labels import pair_labels
 from rectbench.reporting.tables.part_tables import all_tables, pose_table, starts_table, timing_table
 from rectbench.reporting.tables.table import Table, to_csv, to_latex
 from rectbench.runs.run import read_run

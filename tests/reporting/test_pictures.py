@@ -10,7 +10,7 @@ import pytest
 
 import rectbench as rb
 from rectbench.errors import Unsupported
-from rectbench.metrics.catalogue import known
+from rectbench.plugins.catalogue import known
 from rectbench.plugins.figure import FigureData, Sources
 from rectbench.reporting.charts.bars import pair_chart
 from rectbench.reporting.charts.energy import Energy, shape_of
@@ -18,10 +18,10 @@ from rectbench.reporting.charts.grouped_bars import draw_bars
 from rectbench.reporting.charts.squares import mapped_cells, source_squares
 from rectbench.reporting.charts.timing import stage_chart
 from rectbench.reporting.pictures.clouds import SIZE, Clouds
-from rectbench.reporting.pictures.maps import BEYOND, DistortionMaps
+from rectbench.reporting.pictures.maps import DistortionMaps
 from rectbench.reporting.pictures.pairs import RectifiedPairs
 from rectbench.reporting.pictures.views import BACKGROUND, View, looking_at, painted, patches_of, two_views
-from rectbench.reporting.style import looks
+from rectbench.reporting.style import BEYOND, looks
 from rectbench.runs.run import Run, read_run
 from tests.reporting.runs import METHODS, fake_pair, fake_rectification, fake_rig, make_row, quick_rows
 

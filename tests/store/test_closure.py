@@ -28,7 +28,7 @@ COMPUTING_BUT_NO_ROWS = {
     "rectbench": "imports each public name when it is first used",
     "rectbench.__main__": "the command line",
     "rectbench.matching.pose.uncalibrated": "a rig for images without a calibration, which no cell has",
-    "rectbench.metrics.catalogue": "what columns are called and how they are judged",
+    "rectbench.plugins.catalogue": "what columns are called and how they are judged",
     "rectbench.plugins.defaults": "a cell names its method",
     "rectbench.plugins.figure": "what is drawn of the rows",
     "rectbench.plugins.homography": "in the key of each method that uses it, as its own file is",

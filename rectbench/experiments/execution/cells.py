@@ -6,15 +6,15 @@ import json
 from dataclasses import asdict
 from pathlib import Path
 
-from rectbench.experiments.execution.desk import DESK
 from rectbench.experiments.execution.outcomes import LASTING, Outcome, outcome_of
 from rectbench.experiments.tasks import CellTask
 from rectbench.metrics.scoring import digests_of, needs_of, score
 from rectbench.metrics.timing import timed
+from rectbench.pairs.opening import open_pair
 from rectbench.pairs.pair import Pair
 from rectbench.pairs.rendered import RenderedPair
-from rectbench.pairs.rendering import give_memory_back
-from rectbench.pairs.spec import ESTIMATED, RenderedSpec
+from rectbench.pairs.rendering import Studio, give_memory_back
+from rectbench.pairs.spec import ESTIMATED, PairSpec, RenderedSpec
 from rectbench.plugins.fitting import check_result, checked_options
 from rectbench.plugins.metric import Case
 from rectbench.plugins.rectifier import METHODS, Problem, pose_problem
@@ -27,6 +27,29 @@ from rectbench.warps import Rectification
 CELLS = "cells"
 ROW = "row.json"
 MEASURING_PACKAGES = ("numpy", "scipy", "opencv-contrib-python-headless", "drjit", "pydantic")
+
+
+class Desk:
+    """Keeps one pair and one scene: cells of one pair run one after another, as pairs of one scene do."""
+
+    def __init__(self) -> None:
+        self._studio = Studio()
+        self._pair: Pair | None = None
+
+    def pair(self, spec: PairSpec, store: Store) -> Pair:
+        """The pair that is meant, with all that was found of it if it was the last one too."""
+        if self._pair is None or (self._pair.spec, self._pair.store) != (spec, store):
+            self._pair = None  # two pairs at once are a gigabyte
+            self._pair = open_pair(spec, store, self._studio)
+        return self._pair
+
+    def clear(self) -> None:
+        """Put both away."""
+        self._studio, self._pair = Studio(), None
+
+
+DESK = Desk()
+"""That of this process."""
 
 
 def cell_inputs(task: CellTask, pair: Pair) -> Inputs:
@@ -117,11 +140,7 @@ def _measured(task: CellTask, pair: Pair) -> Outcome:
     rectification, first_fit_s = timed(fit)
     check_result(method.name, rectification, problem)
     case = Case(
-        rectification,
-        pair,
-        pose_is_estimated=task.cell.pose == ESTIMATED,
-        fit=fit,
-        first_fit_s=first_fit_s,
+        rectification, pair, pose_is_estimated=task.cell.pose == ESTIMATED, fit=fit, first_fit_s=first_fit_s
     )
     columns = score(case, task.metrics)
     return Outcome(metrics=columns, notes={**rectification.notes, **case.remarks})

@@ -18,8 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from rectbench.errors import RectbenchError, Unavailable
-from rectbench.experiments.execution.cells import cell_inputs, run_cell
-from rectbench.experiments.execution.desk import DESK
+from rectbench.experiments.execution.cells import DESK, cell_inputs, run_cell
 from rectbench.experiments.execution.outcomes import Outcome
 from rectbench.experiments.execution.worker import Limits, restrict
 from rectbench.experiments.tasks import CellTask
@@ -47,11 +46,7 @@ def run_on_cluster(
     with client:
         index_of = {}
         for index, (task, inputs) in enumerate(tasks):
-            message = {
-                "task": task.model_dump(mode="json"),
-                "inputs": inputs,
-                "limits": asdict(limits),
-            }
+            message = {"task": task.model_dump(mode="json"), "inputs": inputs, "limits": asdict(limits)}
             future = client.submit(run_isolated, message, timeout_s, pure=False)
             index_of[future] = index
         for future in as_completed(index_of, loop=client.loop):

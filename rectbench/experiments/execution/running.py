@@ -56,7 +56,7 @@ def execute(
 
     Parameters
     ----------
-    jobs : worker processes; as many as there are cores by default. The outcomes do not hang on it.
+    jobs : worker processes; as many as there are cores by default. The outcomes do not depend on it.
     dask : address of a dask.distributed scheduler that runs the cells in the place of local workers.
     fresh : make again what the store has of this plan.
     progress : where to tell how far it is; nowhere by default.

@@ -1,1 +1,1 @@
-"""Figures of numbers, one file each, and the bars they share. Imports plugins, pictures, style and labels."""
+"""Figures of numbers, one file each, and the bars they share. Imports plugins, pictures, style and names."""

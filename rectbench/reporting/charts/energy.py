@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -19,9 +19,10 @@ from rectbench.metrics.energy import (
     energy_slice,
     has_cubics,
 )
-from rectbench.plugins.figure import FigureData, Result, Sources
+from rectbench.plugins.figure import FigureData, Sources
+from rectbench.plugins.result import Result
 from rectbench.reporting.pictures.pair_picture import PairPicture
-from rectbench.reporting.pictures.panels import attempted
+from rectbench.reporting.pictures.panels import attempts
 from rectbench.reporting.style import INK, PAGE_INCHES
 from rectbench.reporting.tables.numbers import three_digits
 from rectbench.warps import Rectification
@@ -30,22 +31,15 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_NAMES = {
-    "u1": "c₁ of Ψᵤ",
-    "u2": "c₂ of Ψᵤ",
-    "u3": "c₃ of Ψᵤ",
-    "v1": "c₁ of Ψᵥ",
-    "v2": "c₂ of Ψᵥ",
-    "v3": "c₃ of Ψᵥ",
+_CURVES = {
+    "u1": ("c₁ of Ψᵤ", "#0072b2", "-"),
+    "u2": ("c₂ of Ψᵤ", "#0072b2", "--"),
+    "u3": ("c₃ of Ψᵤ", "#0072b2", ":"),
+    "v1": ("c₁ of Ψᵥ", "#d55e00", "-"),
+    "v2": ("c₂ of Ψᵥ", "#d55e00", "--"),
+    "v3": ("c₃ of Ψᵥ", "#d55e00", ":"),
 }
-_LINES = {
-    "u1": ("#0072b2", "-"),
-    "u2": ("#0072b2", "--"),
-    "u3": ("#0072b2", ":"),
-    "v1": ("#d55e00", "-"),
-    "v2": ("#d55e00", "--"),
-    "v3": ("#d55e00", ":"),
-}
+"""What each coefficient is called, and the colour and style of its line."""
 _LEVELS = 14
 _UNFEASIBLE = "#c4c4c4"
 _TOP_RISES = 3.0
@@ -74,7 +68,7 @@ class Energy(PairPicture):
         sources = given.sources
         from matplotlib.figure import Figure
 
-        found = [attempted(r, lambda r=r: _shape(sources, r)) for r in results]  # type: ignore[misc]
+        found = [shape for _, shape in attempts(results, lambda r: _shape(sources, r))]
         shapes = [shape for shape in found if isinstance(shape, Shape)]
         if not shapes:
             raise Unsupported(f"no energy to show: {'; '.join(map(str, found))}")
@@ -128,8 +122,8 @@ def _draw_slice(ax: Axes, over: EnergySlice) -> None:
     ax.clabel(lines, outer, fmt=lambda value: three_digits(value), fontsize=5, inline_spacing=2)
     _hatch_unconvex(ax, over)
     ax.plot(0, 0, "+", color=INK, markersize=5, markeredgewidth=1)
-    ax.set_xlabel(f"change of {_NAMES[over.first]} [%]")
-    ax.set_ylabel(f"change of {_NAMES[over.second]} [%]")
+    ax.set_xlabel(f"change of {_CURVES[over.first][0]} [%]")
+    ax.set_ylabel(f"change of {_CURVES[over.second][0]} [%]")
     ax.set_title("" if math.isnan(over.convex_share) else f"convex on {100 * over.convex_share:.1f} %")
 
 
@@ -147,9 +141,8 @@ def _draw_curves(ax: Axes, curves: Sequence[EnergyCurve]) -> None:
     """L above its minimum on a linear axis, the names above the panel."""
     ax.set_box_aspect(1)
     for curve in curves:
-        colour, line = _LINES[curve.name]
+        label, colour, line = _CURVES[curve.name]
         energy = np.where(curve.feasible, curve.energy, np.nan)
-        label = _NAMES[curve.name]
         ax.plot(100 * curve.steps, energy, color=colour, linestyle=line, linewidth=1.1, label=label)
     highest = [float(curve.energy[curve.feasible].max()) for curve in curves]
     low = min(float(curve.energy[curve.feasible].min()) for curve in curves)
@@ -160,12 +153,5 @@ def _draw_curves(ax: Axes, curves: Sequence[EnergyCurve]) -> None:
     ax.set_ylabel("L")
     ax.grid(axis="y")
     by_number = sorted(ax.lines, key=lambda line: str(line.get_label())[:2])  # columns c₁, c₂, c₃
-    ax.legend(
-        handles=by_number,
-        loc="lower center",
-        bbox_to_anchor=(0.45, 1.0),
-        ncols=3,
-        fontsize=5.5,
-        handlelength=1.8,
-        columnspacing=0.8,
-    )
+    above: dict[str, Any] = {"loc": "lower center", "bbox_to_anchor": (0.45, 1.0)}
+    ax.legend(handles=by_number, **above, ncols=3, fontsize=5.5, handlelength=1.8, columnspacing=0.8)

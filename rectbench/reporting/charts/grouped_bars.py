@@ -9,7 +9,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from rectbench.plugins.figure import Drawing, FigureData, Look, Result
+from rectbench.plugins.figure import Drawing, FigureData, Look
+from rectbench.plugins.result import Result
 from rectbench.reporting.style import COLUMN_INCHES, FAINT, INK, PAGE_INCHES, PAPER, plain_log_ticks
 
 if TYPE_CHECKING:
@@ -20,6 +21,7 @@ _LEAST_BAR_INCHES = 0.06
 _LABEL_BAR_INCHES = 0.075
 _LETTER_INCHES = 0.055
 _LOG_FROM = 20.0
+_CROSS: dict[str, Any] = {"marker": "x", "markersize": 3.2}
 
 
 @dataclass(frozen=True)
@@ -161,13 +163,8 @@ def _draw_panel(
     ax.set_xlim(-step / 2, (len(panel) - 0.5) * step)
     names = [_wrapped(name, slot * step) for name in panel]
     crowded = max(len(line) for name in names for line in name.split("\n")) * _LETTER_INCHES > slot * step
-    ax.set_xticks(
-        [g * step for g in range(len(panel))],
-        names,
-        rotation=25 if crowded else 0,
-        ha="right" if crowded else "center",
-        rotation_mode="anchor" if crowded else "default",
-    )
+    slanted: dict[str, Any] = {"rotation": 25, "ha": "right", "rotation_mode": "anchor"}
+    ax.set_xticks([g * step for g in range(len(panel))], names, **(slanted if crowded else {}))
     ax.tick_params(axis="x", length=0)
 
 
@@ -190,41 +187,17 @@ def _mark_stated(ax: Axes, x: float, reach: float, value: float) -> None:
     """A stated value as a line over its group, with the number on it."""
     ax.plot([x - reach, x + reach], [value, value], color=INK, linewidth=1.4, solid_capstyle="butt")
     ax.annotate(
-        f"{value:g}",
-        (x, value),
-        xytext=(0, 1.5),
-        textcoords="offset points",
-        ha="center",
-        size=6.5,
-        color=INK,
+        f"{value:g}", (x, value), (0, 1.5), textcoords="offset points", ha="center", size=6.5, color=INK
     )
 
 
 def _mark_failure(ax: Axes, x: float, bar: Bar, colour: str, slot: float) -> None:
     """A cross at the foot of the gap, with the status beside it where it fits."""
     at_foot = ax.get_xaxis_transform()
-    ax.plot(
-        [x],
-        [0.035],
-        marker="x",
-        markersize=3.2,
-        markeredgewidth=1.1,
-        color=colour,
-        transform=at_foot,
-        zorder=4,
-    )
+    ax.plot([x], [0.035], **_CROSS, markeredgewidth=1.1, color=colour, transform=at_foot, zorder=4)
     if bar.mean is None and slot >= _LABEL_BAR_INCHES:
-        ax.text(
-            x,
-            0.09,
-            bar.failure,
-            transform=at_foot,
-            rotation=90,
-            size=5,
-            color=FAINT,
-            ha="center",
-            va="bottom",
-        )
+        upright: dict[str, Any] = {"rotation": 90, "ha": "center", "va": "bottom"}
+        ax.text(x, 0.09, bar.failure, transform=at_foot, size=5, color=FAINT, **upright)
 
 
 def _fill(look: Look) -> dict[str, Any]:
@@ -239,8 +212,7 @@ def _add_legend(figure: Figure, chart: BarChart, looks: Mapping[str, Look], colu
 
     handles: list[Artist] = [Patch(**_fill(looks[m]), label=m) for m in chart.methods]
     if any(b.failure for panel in chart.panels.values() for group in panel.values() for b in group.values()):
-        cross = Line2D([], [], linestyle="", marker="x", markersize=3.2, color=INK, label="not measured")
-        handles.append(cross)
+        handles.append(Line2D([], [], **_CROSS, linestyle="", color=INK, label="not measured"))
     if chart.stated:
         handles.append(Line2D([], [], color=INK, linewidth=1.4, label="stated"))
     figure.legend(handles=handles, loc="outside upper center", ncols=min(columns, len(handles)))

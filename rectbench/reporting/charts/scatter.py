@@ -5,14 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from rectbench.metrics.catalogue import column
-from rectbench.plugins.figure import Drawing, Figure, FigureData, Look, Part
+from rectbench.plugins.catalogue import column
+from rectbench.plugins.figure import Drawing, Figure, FigureData, Look
+from rectbench.plugins.result import Part
 from rectbench.reporting.style import COLUMN_INCHES, FAINT, INK, PAGE_INCHES, PAPER, plain_log_ticks
 
 if TYPE_CHECKING:
     import matplotlib.figure
+    from matplotlib.lines import Line2D
 
 _LOG_FROM = 20.0
 Points = tuple[tuple[float, float], ...]
@@ -75,7 +77,6 @@ def scatter(run: Part, key_x: str, keys_y: tuple[str, ...]) -> Scatter:
 def draw_scatter(data: Scatter, looks: Mapping[str, Look]) -> matplotlib.figure.Figure:
     """Draw small points for cells and a large one for each method's mean."""
     import matplotlib.figure
-    from matplotlib.lines import Line2D
 
     width = PAGE_INCHES if len(data.panels) > 1 else COLUMN_INCHES
     legend_columns = 3 if width == COLUMN_INCHES else 5
@@ -107,19 +108,19 @@ def draw_scatter(data: Scatter, looks: Mapping[str, Look]) -> matplotlib.figure.
         ax.set_xlabel(f"{data.label_x}  →")
         ax.set_ylabel(f"←  {label}")
         ax.grid(color="#dddddd", linewidth=0.5)
-    handles = [
-        Line2D(
-            [],
-            [],
-            linestyle="",
-            marker=looks[m].marker,
-            color=looks[m].colour,
-            markersize=5.5,
-            markeredgecolor=PAPER if not any(p[m] for p in data.panels) else INK,
-            markeredgewidth=0.6,
-            label=f"{m} ({data.missing[m]} not measured)" if data.missing[m] else m,
-        )
-        for m in data.methods
-    ]
-    figure.legend(handles=handles, loc="outside upper center", ncols=legend_columns)
+    figure.legend(
+        handles=[_handle(data, m, looks[m]) for m in data.methods],
+        loc="outside upper center",
+        ncols=legend_columns,
+    )
     return figure
+
+
+def _handle(data: Scatter, method: str, look: Look) -> Line2D:
+    """The method's mark in the legend, without a rim where it has no point."""
+    from matplotlib.lines import Line2D
+
+    missing, rim = data.missing[method], INK if any(points[method] for points in data.panels) else PAPER
+    label = f"{method} ({missing} not measured)" if missing else method
+    mark: dict[str, Any] = {"markersize": 5.5, "markeredgecolor": rim, "markeredgewidth": 0.6}
+    return Line2D([], [], linestyle="", marker=look.marker, color=look.colour, label=label, **mark)

@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rectbench.cameras import Camera
-from rectbench.plugins.figure import FigureData, Result, Sources
+from rectbench.plugins.figure import FigureData, Sources
+from rectbench.plugins.result import Result
 from rectbench.reporting.pictures.pair_picture import PairPicture
-from rectbench.reporting.pictures.panels import attempted, fit_into_box, panel_grid, write_head, write_message
-from rectbench.reporting.style import FAINT, INK, PAGE_INCHES
+from rectbench.reporting.pictures.panels import attempts, fit_into_box, panel_grid, write_head, write_message
+from rectbench.reporting.style import FAINT, INK, PAGE_INCHES, add_colour_bar
 from rectbench.types import FloatArray
 from rectbench.warps import Warp
 
@@ -48,36 +49,31 @@ class Squares(PairPicture):
     def draw(self, results: Sequence[Result], given: FigureData) -> Figure:
         """The squares in the left source image, then where and how each method maps them."""
         sources, looks = given.sources, given.looks
-        from matplotlib.cm import ScalarMappable
         from matplotlib.colors import LogNorm
 
         camera = sources.pair(results[0]).rig.left
         squares = source_squares(camera)
         panels: list[tuple[str, Cells | str]] = [("", Cells(squares, np.ones(len(squares)), camera.size))]
-        panels += [
-            (r.method, attempted(r, lambda r=r: _mapped(sources, r, squares)))  # type: ignore[misc]
-            for r in results
-        ]
+        mapped = attempts(results, lambda r: _mapped(sources, r, squares))
+        panels += [(result.method, cells) for result, cells in mapped]
         reach = _reach([cells for _, cells in panels if isinstance(cells, Cells)])
         norm = LogNorm(1 / reach, reach)
         columns = 2 if len(panels) in (2, 4) else 3
         figure, axes = panel_grid(len(panels), columns, camera.height / camera.width, _BAR_INCHES)
         for ax, (method, cells) in zip(axes, panels, strict=True):
-            colour = looks[method].colour if method else None
+            note = ""
             if isinstance(cells, str):
                 write_message(ax, cells, 46)
-                write_head(ax, method, colour=colour)
             else:
                 _draw_cells(ax, cells, norm)
                 note = f"{len(cells.outlines)} of {len(squares)}" if method else f"{len(squares)} squares"
-                write_head(ax, method or "left source image", note, colour)
-        bar_ax = figure.add_axes((1 - 0.85 * _BAR_INCHES / PAGE_INCHES, 0.12, 0.1 / PAGE_INCHES, 0.7))
-        bar = figure.colorbar(ScalarMappable(norm, _COLOURS), cax=bar_ax, extend="both")
+            write_head(ax, method or "left source image", note, looks[method].colour if method else None)
+        place = (1 - 0.85 * _BAR_INCHES / PAGE_INCHES, 0.12, 0.1 / PAGE_INCHES, 0.7)
+        bar = add_colour_bar(figure, place, norm, _COLOURS)
         ticks = [reach**exponent for exponent in (-1, -0.5, 0, 0.5, 1)]
         bar.set_ticks(ticks, labels=[f"{tick:.2g}" for tick in ticks])
-        bar_ax.minorticks_off()
+        bar.ax.minorticks_off()
         bar.set_label("area S of a unit square")
-        bar.outline.set_linewidth(0.4)
         return figure
 
 

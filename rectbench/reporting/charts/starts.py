@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rectbench.plugins.figure import Drawing, Figure, FigureData, Look, Part, Result
+from rectbench.plugins.figure import Drawing, Figure, FigureData, Look
+from rectbench.plugins.result import Part, Result
+from rectbench.reporting.names import pair_labels
 from rectbench.reporting.style import COLUMN_INCHES, INK, PAGE_INCHES, plain_log_ticks
-from rectbench.reporting.tables.labels import pair_labels
 from rectbench.reporting.tables.numbers import decade
 
 if TYPE_CHECKING:

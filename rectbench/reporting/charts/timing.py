@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from rectbench.plugins.figure import Drawing, Figure, FigureData, Part
+from rectbench.plugins.figure import Drawing, Figure, FigureData
+from rectbench.plugins.result import Part
 from rectbench.reporting.charts.grouped_bars import BarChart, bar_drawing, bar_of
 
 

@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rectbench.images.stereo_pair import StereoPair
-from rectbench.metrics.catalogue import column
-from rectbench.plugins.figure import FigureData, Result, Sources
+from rectbench.plugins.catalogue import column
+from rectbench.plugins.figure import FigureData, Sources
+from rectbench.plugins.result import Result
 from rectbench.rendering.truth import Truth
 from rectbench.reporting.pictures.pair_picture import PairPicture
-from rectbench.reporting.pictures.panels import attempted, fit_into_box, panel_grid, write_head, write_message
+from rectbench.reporting.pictures.panels import attempts, fit_into_box, panel_grid, write_head, write_message
 from rectbench.reporting.pictures.views import Floats, Patches, Picture, View, painted, patches_of, two_views
 from rectbench.reporting.tables.numbers import shown
 from rectbench.types import FloatArray
@@ -46,10 +47,7 @@ class Clouds(PairPicture):
         """A row the truth, if it is known, and a row a method: from beside the cameras, and from above."""
         sources, looks = given.sources, given.looks
         known = sources.pair(results[0])
-        clouds = [
-            (r, attempted(r, lambda r=r: _reconstructed(sources, r)))  # type: ignore[misc]
-            for r in results
-        ]
+        clouds = attempts(results, lambda r: _reconstructed(sources, r))
         # All are seen alike: from viewpoints made from the truth, else from what they show together.
         points: FloatArray | Floats
         if known.knows_truth:

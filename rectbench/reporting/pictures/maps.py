@@ -11,10 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rectbench.cameras import Camera
-from rectbench.plugins.figure import FigureData, Result, Side, Sources
+from rectbench.plugins.figure import FigureData, Side, Sources
+from rectbench.plugins.result import Result
 from rectbench.reporting.pictures.pair_picture import PairPicture
-from rectbench.reporting.pictures.panels import attempted, fit_into_box, panel_grid, write_head, write_message
-from rectbench.reporting.style import LOST, PAGE_INCHES, plain_log_ticks
+from rectbench.reporting.pictures.panels import attempts, fit_into_box, panel_grid, write_head, write_message
+from rectbench.reporting.style import LOST, PAGE_INCHES, add_colour_bar, plain_log_ticks, shaded, shades
 from rectbench.reporting.tables.numbers import decade, three_digits
 from rectbench.rigs import Rig
 from rectbench.types import FloatArray
@@ -22,7 +23,7 @@ from rectbench.warps import Rectification
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.colors import Colormap, LogNorm
+    from matplotlib.colors import LogNorm
     from matplotlib.figure import Figure
 
 SAMPLES_ACROSS = 200
@@ -30,7 +31,6 @@ _BAR_INCHES = 0.72
 _GAP = 0.02
 _LEAST_SHOWN, _MOST_SHOWN = 1e-3, 1e2
 """Below, no change is seen; above, a pixel has become eleven, and has one colour, not to grey the rest."""
-BEYOND = "#8c1d40"
 _SIDES: tuple[Side, Side] = ("left", "right")
 
 
@@ -50,42 +50,30 @@ class DistortionMaps(PairPicture):
     def draw(self, results: Sequence[Result], given: FigureData) -> Figure:
         """A panel a method, left and right image in it, three panels to a row."""
         sources, looks = given.sources, given.looks
-        from matplotlib.cm import ScalarMappable
         from matplotlib.colors import LogNorm
         from matplotlib.patches import Patch
 
         rig = sources.pair(results[0]).rig
-        panels = [
-            (r, attempted(r, lambda r=r: _maps(sources, r, rig)))  # type: ignore[misc]
-            for r in results
-        ]
+        panels = attempts(results, lambda r: _maps(sources, r, rig))
         shown = [m for _, maps in panels if not isinstance(maps, str) for m in maps]
         bottom, top = _limits(shown)
         norm = LogNorm(bottom, top)
         camera = rig.left
         figure, axes = panel_grid(len(panels), 3, camera.height / ((2 + _GAP) * camera.width), _BAR_INCHES)
         for ax, (result, maps) in zip(axes, panels, strict=True):
-            colour, native = looks[result.method].colour, result.metrics.get("distortion_native")
+            native, note = result.metrics.get("distortion_native"), ""
             if isinstance(maps, str):
                 write_message(ax, maps, 46)
-                write_head(ax, result.method, colour=colour)
             else:
                 _draw_panel(ax, maps, norm)
-                write_head(ax, result.method, "" if native is None else f"L = {three_digits(native)}", colour)
-        bar_ax = figure.add_axes((1 - 0.85 * _BAR_INCHES / PAGE_INCHES, 0.1, 0.1 / PAGE_INCHES, 0.68))
-        bar = figure.colorbar(ScalarMappable(norm, _shades()), cax=bar_ax, extend="both")
-        plain_log_ticks(bar_ax.yaxis)
+                note = "" if native is None else f"L = {three_digits(native)}"
+            write_head(ax, result.method, note, looks[result.method].colour)
+        place = (1 - 0.85 * _BAR_INCHES / PAGE_INCHES, 0.1, 0.1 / PAGE_INCHES, 0.68)
+        bar = add_colour_bar(figure, place, norm, shades())
+        plain_log_ticks(bar.ax.yaxis)
         bar.set_label("distortion L")
-        bar.outline.set_linewidth(0.4)
         if any((m.values > top).any() for m in shown):
-            bar_ax.annotate(
-                f"> {decade(top)}",
-                (0, 1.05),
-                xycoords="axes fraction",
-                xytext=(0, 4),
-                textcoords="offset points",
-                size=6.5,
-            )
+            bar.ax.annotate(f"> {decade(top)}", (0, 1.05), (0, 4), "axes fraction", "offset points", size=6.5)
         if any(np.isnan(m.values[m.lens]).any() for m in shown):
             patch = Patch(facecolor=LOST, label="not mapped")
             figure.legend(handles=[patch], loc="lower right", borderaxespad=0, fontsize=6)
@@ -98,13 +86,6 @@ class SideMap:
 
     values: FloatArray
     lens: NDArray[np.bool_]
-
-
-def _shades() -> Colormap:
-    """Viridis, with colours of their own for what lies beyond the scale and for what is not mapped."""
-    from matplotlib import colormaps
-
-    return colormaps["viridis"].with_extremes(over=BEYOND, bad=LOST)
 
 
 def _maps(sources: Sources, result: Result, rig: Rig) -> tuple[SideMap, SideMap]:
@@ -137,13 +118,11 @@ def _limits(maps: Sequence[SideMap]) -> tuple[float, float]:
 
 
 def _draw_panel(ax: Axes, maps: tuple[SideMap, SideMap], norm: LogNorm) -> None:
-    colours, start = _shades(), 0.0
+    start = 0.0
     for side in maps:
         height, width = side.values.shape
-        shades = colours(norm(side.values))
-        shades[np.isnan(side.values)] = colours.get_bad()
-        shades[~side.lens] = (1.0, 1.0, 1.0, 1.0)
-        ax.imshow(shades, extent=(start, start + width, height, 0), interpolation="none", aspect="auto")
+        image = shaded(side.values, side.lens, norm)
+        ax.imshow(image, extent=(start, start + width, height, 0), interpolation="none", aspect="auto")
         start += width * (1 + _GAP)
     width, height = start - maps[1].values.shape[1] * _GAP, max(side.values.shape[0] for side in maps)
     fit_into_box(ax, width, height)

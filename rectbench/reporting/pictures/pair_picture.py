@@ -6,7 +6,8 @@ from abc import abstractmethod
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, ClassVar, Literal
 
-from rectbench.plugins.figure import Drawing, Figure, FigureData, Part, Result
+from rectbench.plugins.figure import Drawing, Figure, FigureData
+from rectbench.plugins.result import Part, Result
 
 if TYPE_CHECKING:
     import matplotlib.figure

@@ -10,10 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rectbench.images.stereo_pair import StereoPair
-from rectbench.metrics.catalogue import column, known
-from rectbench.plugins.figure import FigureData, Result, Sources
+from rectbench.plugins.catalogue import column, known
+from rectbench.plugins.figure import FigureData, Sources
+from rectbench.plugins.result import Result
 from rectbench.reporting.pictures.pair_picture import PairPicture
-from rectbench.reporting.pictures.panels import attempted, fit_into_box, panel_grid, write_head, write_message
+from rectbench.reporting.pictures.panels import attempts, fit_into_box, panel_grid, write_head, write_message
 from rectbench.reporting.style import PAGE_INCHES
 from rectbench.reporting.tables.numbers import shown
 from rectbench.types import FloatArray, Matches
@@ -68,21 +69,18 @@ class RectifiedPairs(PairPicture):
         known = sources.pair(results[0])
         pair, marks = known.images, _marks(known.shown_matches(), known.images)
         panels: list[tuple[str, Panel | str]] = [("", Panel("", pair.left, pair.right, marks))]
-        panels += [
-            (r.method, attempted(r, lambda r=r: _panel(sources, r, pair, marks)))  # type: ignore[misc]
-            for r in results
-        ]
+        rectified = attempts(results, lambda r: _panel(sources, r, pair, marks))
+        panels += [(result.method, panel) for result, panel in rectified]
         height, width = pair.left.shape[:2]
         figure, axes = panel_grid(len(panels), 2, height / ((2 + _GAP) * width))
         for ax, (method, panel) in zip(axes, panels, strict=True):
-            if isinstance(panel, Panel):
-                _draw_panel(ax, panel)
-                write_head(
-                    ax, method or "source images", panel.note, looks[method].colour if method else None
-                )
-            else:
+            note = ""
+            if isinstance(panel, str):
                 write_message(ax, panel, 70)
-                write_head(ax, method, colour=looks[method].colour)
+            else:
+                _draw_panel(ax, panel)
+                note = panel.note
+            write_head(ax, method or "source images", note, looks[method].colour if method else None)
         return figure
 
 
@@ -95,11 +93,12 @@ class Shown:
 
     def moved(self, rect: Rectification) -> Shown:
         """The same points in the rectified images."""
-        return Shown(*(Matches(rect.left.forward(m.left), rect.right.forward(m.right)) for m in self._both))
-
-    @property
-    def _both(self) -> tuple[Matches, Matches]:
-        return self.lines, self.boxes
+        return Shown(
+            *(
+                Matches(rect.left.forward(m.left), rect.right.forward(m.right))
+                for m in (self.lines, self.boxes)
+            )
+        )
 
 
 @dataclass(frozen=True)

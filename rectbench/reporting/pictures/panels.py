@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 import textwrap
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, TypeVar
 
 from rectbench.errors import RectbenchError
-from rectbench.plugins.figure import Result
+from rectbench.plugins.result import Result
 from rectbench.reporting.style import INK, PAGE_INCHES
 
 if TYPE_CHECKING:
@@ -45,12 +45,16 @@ def panel_grid(
     return figure, axes
 
 
-def attempted(result: Result, make: Callable[[], Made]) -> Made | str:
-    """What `make` gives of a cell, or the reason why its picture is missing."""
+def attempts(results: Sequence[Result], make: Callable[[Result], Made]) -> list[tuple[Result, Made | str]]:
+    """Each result with what `make` gives of it, or with the reason why its picture is missing."""
+    return [(result, _attempted(result, make)) for result in results]
+
+
+def _attempted(result: Result, make: Callable[[Result], Made]) -> Made | str:
     if not result.ok:
         return f"{result.status}: {result.reason}" if result.reason else result.status
     try:
-        return make()
+        return make(result)
     except Exception as error:  # a plugin's code runs here, and one picture is no reason to lose a report
         return f"no picture: {error}" if isinstance(error, RectbenchError) else f"no picture: {error!r}"
 

@@ -14,7 +14,7 @@ from rectbench.errors import Unavailable
 from rectbench.matching import Reconstruction
 from rectbench.reporting.pictures.panels import fit_into_box, panel_grid, write_head
 from rectbench.reporting.pictures.views import painted, patches_of, two_views
-from rectbench.reporting.style import LOST, PAGE_INCHES, STYLE, encode, plain_log_ticks
+from rectbench.reporting.style import LOST, PAGE_INCHES, STYLE, add_colour_bar, encode, plain_log_ticks
 from rectbench.writing import write_atomically
 
 if TYPE_CHECKING:
@@ -62,7 +62,6 @@ def draw_reconstruction(reconstruction: Reconstruction) -> Figure:
     Expects a reconstruction with points.
     """
     from matplotlib import colormaps, rc_context
-    from matplotlib.cm import ScalarMappable
     from matplotlib.colors import LogNorm
 
     depth, (width, height) = reconstruction.depth, reconstruction.rect.size
@@ -82,18 +81,17 @@ def draw_reconstruction(reconstruction: Reconstruction) -> Figure:
         "the points, seen from beside the camera": beside,
         "the points, seen from above": above,
     }
-    with rc_context(STYLE):
+    with rc_context(fname=STYLE):
         figure, axes = panel_grid(len(panels), 2, height / width, BAR_INCHES)
         for ax, (name, image) in zip(axes, panels.items(), strict=True):
             ax.imshow(image, interpolation="antialiased", aspect="auto")
             fit_into_box(ax, image.shape[1], image.shape[0])
             write_head(ax, name, "grey: not found" if name == "distance" else "")
         box = axes[1].get_position()
-        bar_ax = figure.add_axes((1 - 0.8 * BAR_INCHES / PAGE_INCHES, box.y0, 0.1 / PAGE_INCHES, box.height))
-        bar = figure.colorbar(ScalarMappable(norm, "turbo_r"), cax=bar_ax, extend="both")
+        place = (1 - 0.8 * BAR_INCHES / PAGE_INCHES, box.y0, 0.1 / PAGE_INCHES, box.height)
+        bar_ax = add_colour_bar(figure, place, norm, "turbo_r").ax
         plain_log_ticks(bar_ax.yaxis)
         bar_ax.set_title("m")
-        bar.outline.set_linewidth(0.4)
     return figure
 
 

@@ -8,7 +8,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +17,7 @@ from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
 from rectbench.metrics import Uncertainty
 from rectbench.reporting.pictures.panels import fit_into_box, panel_grid, write_head, write_message
-from rectbench.reporting.style import LOST, PAGE_INCHES, STYLE, encode
+from rectbench.reporting.style import LOST, PAGE_INCHES, STYLE, add_colour_bar, encode, shaded, shades
 from rectbench.reporting.tables.numbers import three_digits
 from rectbench.rigs.covariance import RigCovariance
 from rectbench.types import FloatArray
@@ -26,7 +26,7 @@ from rectbench.writing import write_atomically
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.colors import Colormap, Normalize
+    from matplotlib.colors import Normalize
     from matplotlib.figure import Figure
 
 MAP_PIXELS = 150_000
@@ -39,7 +39,6 @@ LEAST_PX, LEAST_PERCENT = 1e-3, 1e-1
 """Ends of the scales where nothing is uncertain."""
 WHOLE_DISTANCE = 100.0
 """Per cent; of a distance that is less sure than this, no more can be said."""
-BEYOND = "#8c1d40"
 MOST_COLUMNS = 4
 
 
@@ -60,7 +59,7 @@ def write_uncertainty(
     """
     from matplotlib import rc_context
 
-    with rc_context(STYLE):
+    with rc_context(fname=STYLE):
         figure = draw_uncertainty(found, camera)
         pictures = {f"uncertainty.{end}": encode(figure, end, DOTS_PER_INCH) for end in ("png", "pdf")}
     arrays = io.BytesIO()
@@ -106,62 +105,59 @@ def draw_uncertainty(found: Uncertainty, camera: Camera) -> Figure:
     rows, distances = _row_maps(found), _distance_maps(found)
     _draw_maps(figure, axes[:count], rows, lens)
     _draw_maps(figure, axes[count:], distances, lens)
-    if any(np.isnan(one[lens]).any() for one in rows.values):
+    if any(np.isnan(one.values[lens]).any() for one in rows.maps):
         _add_legend(figure)
     return figure
+
+
+class _Map(NamedTuple):
+    """A quantity over the image at one distance: values [h, w], its head, and what is noted of it."""
+
+    values: FloatArray
+    head: str
+    note: str
+    message: str = ""
+    """What is said in its place, if it has nothing to show."""
 
 
 @dataclass(frozen=True)
 class _Maps:
     """Maps of one quantity, one a distance, on one colour scale."""
 
-    values: Sequence[FloatArray]
-    """[h, w] each, in `unit`."""
+    maps: Sequence[_Map]
     norm: Normalize
     unit: str
-    heads: Sequence[str]
-    notes: Sequence[str]
-    messages: Sequence[str]
-    """What is said in the place of a map; empty where there is one."""
 
 
 def _row_maps(found: Uncertainty) -> _Maps:
     from matplotlib.colors import Normalize
 
-    values = list(found.row_error_sigma_px)
-    known = finite(np.stack(values))
+    known = finite(found.row_error_sigma_px)
     top = float(np.quantile(known, NEARLY_ALL[1])) if known.size else 0.0
-    rms = [numbers["row_error_sigma_rms_px"] for numbers in found.numbers()]
-    return _Maps(
-        values,
-        Normalize(0.0, _rounded_up(max(top, LEAST_PX))),
-        "px",
-        heads=[f"row error {_at(depth)}" for depth in found.depth_m],
-        notes=["" if math.isnan(one) else f"σ {three_digits(one)} px RMS" for one in rms],
-        messages=[""] * len(values),
-    )
+    maps = []
+    for values, numbers in zip(found.row_error_sigma_px, found.numbers(), strict=True):
+        rms = numbers["row_error_sigma_rms_px"]
+        note = "" if math.isnan(rms) else f"σ {three_digits(rms)} px RMS"
+        maps.append(_Map(values, f"row error {_at(numbers['depth_m'])}", note))
+    return _Maps(maps, Normalize(0.0, _rounded_up(max(top, LEAST_PX))), "px")
 
 
 def _distance_maps(found: Uncertainty) -> _Maps:
     from matplotlib.colors import LogNorm
 
-    values = list(100 * found.matched_depth_sigma_share)
-    known = finite(np.stack(values))
+    percent = 100 * found.matched_depth_sigma_share
+    known = finite(percent)
     known = known[known > 0]
     low, high = np.quantile(known, NEARLY_ALL) if known.size else (LEAST_PERCENT, 1.0)
     top = min(_rounded_up(high), WHOLE_DISTANCE)
-    medians = [100 * numbers["depth_sigma_median_matched_share"] for numbers in found.numbers()]
-    return _Maps(
-        values,
-        LogNorm(min(_rounded_down(low), top / 10), top),
-        "%",
-        heads=[f"distance {_at(depth)}" for depth in found.depth_m],
-        notes=["" if math.isnan(one) else f"σ {three_digits(one)} % median" for one in medians],
-        messages=[
-            _told_from_infinity(inverse) if math.isinf(depth) else ""
-            for depth, inverse in zip(found.depth_m, found.matched_inverse_depth_sigma_per_m, strict=True)
-        ],
-    )
+    maps = []
+    for k, numbers in enumerate(found.numbers()):
+        depth, median = numbers["depth_m"], 100 * numbers["depth_sigma_median_matched_share"]
+        note = "" if math.isnan(median) else f"σ {three_digits(median)} % median"
+        inverse = found.matched_inverse_depth_sigma_per_m[k]
+        message = _told_from_infinity(inverse) if math.isinf(depth) else ""
+        maps.append(_Map(percent[k], f"distance {_at(depth)}", note, message))
+    return _Maps(maps, LogNorm(min(_rounded_down(low), top / 10), top), "%")
 
 
 def _told_from_infinity(inverse_sigma_per_m: FloatArray) -> str:
@@ -175,45 +171,33 @@ def _told_from_infinity(inverse_sigma_per_m: FloatArray) -> str:
 
 
 def _draw_maps(figure: Figure, axes: Sequence[Axes], maps: _Maps, lens: NDArray[np.bool_]) -> None:
-    for ax, values, head, note, message in zip(
-        axes, maps.values, maps.heads, maps.notes, maps.messages, strict=True
-    ):
-        if message:
-            write_message(ax, message, 30)
+    for ax, one in zip(axes, maps.maps, strict=True):
+        if one.message:
+            write_message(ax, one.message, 30)
         else:
-            _draw_map(ax, values, lens, maps.norm)
-        write_head(ax, head, note)
-    if not all(maps.messages):
+            ax.imshow(shaded(one.values, lens, maps.norm), interpolation="antialiased", aspect="auto")
+            fit_into_box(ax, lens.shape[1], lens.shape[0])
+        write_head(ax, one.head, one.note)
+    if not all(one.message for one in maps.maps):
         _draw_bar(figure, axes[-1], maps)
-
-
-def _draw_map(ax: Axes, values: FloatArray, lens: NDArray[np.bool_], norm: Normalize) -> None:
-    shades = _shades()(norm(values))
-    shades[np.isnan(values)] = _shades().get_bad()
-    shades[~lens] = (1.0, 1.0, 1.0, 1.0)
-    ax.imshow(shades, interpolation="antialiased", aspect="auto")
-    fit_into_box(ax, values.shape[1], values.shape[0])
 
 
 def _draw_bar(figure: Figure, ax: Axes, maps: _Maps) -> None:
     """The colour bar of a quantity, right of its last map, and what lies beyond its end."""
-    from matplotlib.cm import ScalarMappable
     from matplotlib.colors import LogNorm
     from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 
     box = ax.get_position()
     left = box.x1 + 0.07 / PAGE_INCHES
-    bar_ax = figure.add_axes((left, box.y0 + 0.15 * box.height, 0.09 / PAGE_INCHES, 0.62 * box.height))
+    place = (left, box.y0 + 0.15 * box.height, 0.09 / PAGE_INCHES, 0.62 * box.height)
     top = float(maps.norm.vmax or 0.0)
-    clipped = any((values > top).any() for values in maps.values)
-    extend = "max" if clipped else "neither"
-    bar = figure.colorbar(ScalarMappable(maps.norm, _shades()), cax=bar_ax, extend=extend)
+    clipped = any((one.values > top).any() for one in maps.maps)
+    bar_ax = add_colour_bar(figure, place, maps.norm, shades(), "max" if clipped else "neither").ax
     locator = LogLocator(subs=(1.0, 2.0, 5.0)) if isinstance(maps.norm, LogNorm) else MaxNLocator(6)
     bar_ax.yaxis.set_major_locator(locator)
     bar_ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     bar_ax.yaxis.set_minor_formatter(NullFormatter())
     bar_ax.set_title(f"σ [{maps.unit}]", loc="left", pad=19)
-    bar.outline.set_linewidth(0.4)
     if clipped:
         bar_ax.text(1.5, 1.08, f"> {top:g}", transform=bar_ax.transAxes, va="center", size=6.5)
 
@@ -223,13 +207,6 @@ def _add_legend(figure: Figure) -> None:
 
     patch = Patch(facecolor=LOST, label="not in both\nimages")
     figure.legend(handles=[patch], loc="lower right", borderaxespad=0, fontsize=6)
-
-
-def _shades() -> Colormap:
-    """Viridis, with colours of their own for what lies beyond the scale and for what is not mapped."""
-    from matplotlib import colormaps
-
-    return colormaps["viridis"].with_extremes(over=BEYOND, bad=LOST)
 
 
 def _at(depth_m: float) -> str:

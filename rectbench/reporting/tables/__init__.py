@@ -1,1 +1,1 @@
-"""Tables of a run and their spellings."""
+"""Tables of a run, and how they are spelt. Imports runs, plugins and names; starts from charts."""

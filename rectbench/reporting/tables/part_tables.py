@@ -9,17 +9,24 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rectbench.plugins.metric import Column
+from rectbench.plugins.result import Result
 from rectbench.reporting.asked import methods_part, wanted_figures
 from rectbench.reporting.charts.starts import SAME_MINIMUM, Starts, start_study, study_method
-from rectbench.reporting.names import named, slug
-from rectbench.reporting.tables.claims_tables import claims_tables
-from rectbench.reporting.tables.labels import one_line, pair_labels
+from rectbench.reporting.names import named, one_line, pair_labels, slug
 from rectbench.reporting.tables.numbers import MISSING, three_digits
-from rectbench.reporting.tables.photograph_tables import photograph_tables
-from rectbench.reporting.tables.table import Entry, Heading, Section, Table, number, whole, words
+from rectbench.reporting.tables.run_tables import claims_tables, failures_table, photograph_tables
+from rectbench.reporting.tables.table import (
+    Entry,
+    Heading,
+    Section,
+    Table,
+    number,
+    text_heading,
+    whole,
+    words,
+)
 from rectbench.reporting.tables.tabulation import (
     distortion_table,
-    failures_table,
     heading,
     is_ranked,
     main_tables,
@@ -29,7 +36,6 @@ from rectbench.reporting.tables.tabulation import (
     titled,
     topic_columns,
 )
-from rectbench.runs.rows import Row
 from rectbench.runs.run import Run
 from rectbench.types import FloatArray
 
@@ -138,7 +144,7 @@ def pairwise_tables(run: Run, topic: str) -> Iterator[Table]:
         )
 
 
-def _by_pair(run: Run, pose: str) -> dict[str, tuple[Row, ...]]:
+def _by_pair(run: Run, pose: str) -> dict[str, tuple[Result, ...]]:
     results, labels = run.select(pose=pose), pair_labels(run)
     by_pair = {one_line(label): run.select(results, place=place) for place, label in labels.items()}
     return {"all pairs": results, **by_pair} if len(labels) > 1 else by_pair
@@ -148,6 +154,7 @@ def pose_table(run: Run) -> Table:
     """The estimated poses, a row a pair; all methods of a pair share them."""
     columns = topic_columns(run, "Poses")
     keys = [column.key for column in columns]
+    count = Heading("poses", "poses", meaning="How many were estimated.")
     rows = [
         _pose_row(one_line(label), _poses(run.select(place=place), keys), columns, np.mean)
         for place, label in pair_labels(run).items()
@@ -161,16 +168,12 @@ def pose_table(run: Run) -> Table:
         title=titled(run, "Poses estimated from the images"),
         caption=("Against the true pose" if run.has_truth else "Against the calibration")
         + "; averages over seeds, and the median over all. σ is what the estimate believes.",
-        headings=(
-            Heading("pair", "pair", numeric=False),
-            Heading("poses", "poses", meaning="How many were estimated."),
-            *map(heading, columns),
-        ),
+        headings=(text_heading("pair"), count, *map(heading, columns)),
         sections=(Section("", tuple(rows)),),
     )
 
 
-def _poses(results: Sequence[Row], keys: Sequence[str]) -> list[list[float]]:
+def _poses(results: Sequence[Result], keys: Sequence[str]) -> list[list[float]]:
     """The columns of each estimate, once."""
     estimates = {(r.pair, r.pose): r for r in results if r.ok and keys[0] in r.metrics}
     return [[r.metrics.get(key, math.nan) for key in keys] for r in estimates.values()]
@@ -187,6 +190,7 @@ def _pose_row(
 def timing_table(run: Run) -> Table:
     """Seconds of each stage beside those somebody else stated."""
     stages = {key: name for key, name in run.catalogue.panels("Time").items() if key in run.metrics}
+    heads = [Heading(f"{name} [s]", k, meaning=run.catalogue.column(k).meaning) for k, name in stages.items()]
     stated = run.stated_seconds
     sections = []
     for rig in run.rigs:
@@ -201,18 +205,12 @@ def timing_table(run: Run) -> Table:
         name=named(run, "timing"),
         title=titled(run, "Time"),
         caption="Seconds a pair, averages over its runs; tables are part of the warp.",
-        headings=(
-            Heading("method", "method", numeric=False),
-            *(
-                Heading(f"{name} [s]", key, meaning=run.catalogue.column(key).meaning)
-                for key, name in stages.items()
-            ),
-        ),
+        headings=(text_heading("method"), *heads),
         sections=tuple(sections),
     )
 
 
-def _timing_row(results: Sequence[Row], method: str, stages: Iterable[str]) -> tuple[Entry, ...]:
+def _timing_row(results: Sequence[Result], method: str, stages: Iterable[str]) -> tuple[Entry, ...]:
     found = [[r.metrics[key] for r in results if key in r.metrics] for key in stages]
     return words(method), *(_seconds(sum(values) / len(values) if values else None) for values in found)
 
@@ -242,7 +240,7 @@ def starts_table(part: Run, study: Sequence[Starts]) -> Table:
         caption=f"Random starts of {study_method(part)}; at most {100 * SAME_MINIMUM:g} % above the default "
         "start's L is the same minimum.",
         headings=(
-            Heading("pair", "pair", numeric=False),
+            text_heading("pair"),
             Heading("starts", "starts"),
             Heading("same minimum", "same"),
             Heading("failed", "failed", meaning="They gave no rectification."),

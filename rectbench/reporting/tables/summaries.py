@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rectbench.plugins.metric import Average, Column
-from rectbench.runs.rows import Row
+from rectbench.plugins.result import Result
 from rectbench.types import FloatArray
 
 
@@ -41,7 +41,7 @@ class Summary:
         return self.failed == 0
 
 
-def summarise(method: str, results: Sequence[Row], columns: Iterable[Column]) -> Summary:
+def summarise(method: str, results: Sequence[Result], columns: Iterable[Column]) -> Summary:
     """Average the `columns` over the ok cells of `results`, each as it says."""
     ok = [r for r in results if r.ok]
     averages = {c.key: _average(c, [r.metrics[c.key] for r in ok if c.key in r.metrics]) for c in columns}

@@ -49,6 +49,11 @@ class Heading:
     wraps: bool = False
 
 
+def text_heading(text: str, key: str = "", wraps: bool = False) -> Heading:
+    """The head of a column of words; named as it reads unless `key` says otherwise."""
+    return Heading(text, key or text, numeric=False, wraps=wraps)
+
+
 @dataclass(frozen=True)
 class Section:
     """Rows that belong together under an optional title."""

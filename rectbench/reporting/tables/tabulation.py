@@ -12,16 +12,16 @@ from itertools import product
 from typing import Any
 
 from rectbench.plugins.metric import Column
+from rectbench.plugins.result import Result
 from rectbench.reporting.asked import methods_part, part_title
 from rectbench.reporting.names import named
 from rectbench.reporting.tables.numbers import MISSING, three_digits
 from rectbench.reporting.tables.summaries import Summary, ranked, summarise
-from rectbench.reporting.tables.table import Entry, Heading, Section, Table, number, with_best
-from rectbench.runs.rows import Row
+from rectbench.reporting.tables.table import Entry, Heading, Section, Table, number, text_heading, with_best
 from rectbench.runs.run import Run
 
-OK_HEADING = Heading("ok", "ok", meaning="Cells measured of cells planned.")
-NOT_OK_HEADING = Heading("not ok", "not_ok", numeric=False, meaning="How the other cells ended.")
+_METHOD_HEADINGS = text_heading("method"), Heading("ok", "ok", meaning="Cells measured of cells planned.")
+_NOT_OK_HEADING = Heading("not ok", "not_ok", numeric=False, meaning="How the other cells ended.")
 
 PARTIAL = (
     "A method with failed cells is averaged over its measured cells alone. These are other pairs than its "
@@ -54,8 +54,7 @@ def _main_table(run: Run, pose: str) -> Table:
     summaries = ranked(_summaries(run, results, columns), ranking.key)
     failing = any(not s.complete for s in summaries)
     headings = [Heading("rank", "rank", meaning=f"By {ranking.heading}; failures count before it.")]
-    headings += [Heading("method", "method", numeric=False), OK_HEADING]
-    headings += [*map(heading, columns), *[NOT_OK_HEADING] * failing]
+    headings += [*_METHOD_HEADINGS, *map(heading, columns), *[_NOT_OK_HEADING] * failing]
     ranks = [
         Entry(str(i), i) if s.averages.get(ranking.key) and s.ok else Entry(MISSING)
         for i, s in enumerate(summaries, 1)
@@ -108,19 +107,14 @@ def topic_columns(run: Run, topic: str) -> list[Column]:
     return measured(run, run.catalogue.shown("topic", "page", "summary", topic=topic))
 
 
-def methods_table(run: Run, columns: Sequence[Column], sections: Mapping[str, Sequence[Row]]) -> Table:
+def methods_table(run: Run, columns: Sequence[Column], sections: Mapping[str, Sequence[Result]]) -> Table:
     """Averages of the columns, a row a method, in a section of results each."""
     failing = any(not r.ok for results in sections.values() for r in results)
     return Table(
         name="",
         title="",
         caption="",
-        headings=(
-            Heading("method", "method", numeric=False),
-            OK_HEADING,
-            *map(heading, columns),
-            *[NOT_OK_HEADING] * failing,
-        ),
+        headings=(*_METHOD_HEADINGS, *map(heading, columns), *[_NOT_OK_HEADING] * failing),
         sections=tuple(
             Section(title, _method_rows(_summaries(run, results, columns), columns, results, failing))
             for title, results in sections.items()
@@ -131,14 +125,14 @@ def methods_table(run: Run, columns: Sequence[Column], sections: Mapping[str, Se
     )
 
 
-def _summaries(run: Run, results: Sequence[Row], columns: Sequence[Column]) -> list[Summary]:
+def _summaries(run: Run, results: Sequence[Result], columns: Sequence[Column]) -> list[Summary]:
     """Of the methods that any of the results is of, in the run's order."""
     mine = {method: [r for r in results if r.method == method] for method in run.methods}
     return [summarise(method, own, columns) for method, own in mine.items() if own]
 
 
 def _method_rows(
-    summaries: Sequence[Summary], columns: Sequence[Column], results: Sequence[Row], failing: bool
+    summaries: Sequence[Summary], columns: Sequence[Column], results: Sequence[Result], failing: bool
 ) -> tuple[tuple[Entry, ...], ...]:
     fields = [_averaged_field(summaries, column) for column in columns]
     return tuple(
@@ -160,15 +154,14 @@ def titled(run: Run, title: str) -> str:
 
 def pair_tables(run: Run) -> list[Table]:
     """Every metric of every method, one table a (scene, rig), one section a pose (motion, seed)."""
-    tables = []
-    for rig, scene in product(run.rigs, run.scenes):
-        results = run.select(scene=scene, rig=rig)
-        if results:
-            tables.append(_pair_table(run, scene, rig, results))
-    return tables
+    return [
+        _pair_table(run, scene, rig, results)
+        for rig, scene in product(run.rigs, run.scenes)
+        if (results := run.select(scene=scene, rig=rig))
+    ]
 
 
-def _pair_table(run: Run, scene: str, rig: str, results: Sequence[Row]) -> Table:
+def _pair_table(run: Run, scene: str, rig: str, results: Sequence[Result]) -> Table:
     methods = [m for m in run.methods if any(r.method == m for r in results)]
     sections = []
     for motion, pose, seed in dict.fromkeys((r.motion, r.pose, r.seed) for r in results):
@@ -188,15 +181,12 @@ def _pair_table(run: Run, scene: str, rig: str, results: Sequence[Row]) -> Table
         name=named(run, "pair", scene, rig),
         title=f"{scene} seen by {rig}",
         caption="Every metric of every method; the best of each row is bold.",
-        headings=(
-            Heading("metric", "metric", numeric=False),
-            *(Heading(method, method) for method in methods),
-        ),
+        headings=(text_heading("metric"), *(Heading(method, method) for method in methods)),
         sections=tuple(sections),
     )
 
 
-def _metric_row(shown_as: Column, present: Sequence[Row | None]) -> tuple[Entry, ...]:
+def _metric_row(shown_as: Column, present: Sequence[Result | None]) -> tuple[Entry, ...]:
     entries = [
         number(r.metrics.get(shown_as.key), shown_as) if r is not None and r.ok else Entry(MISSING)
         for r in present
@@ -205,7 +195,7 @@ def _metric_row(shown_as: Column, present: Sequence[Row | None]) -> tuple[Entry,
     return head, *with_best(entries, shown_as, [True] * len(entries))
 
 
-def _note_row(name: str, present: Sequence[Row | None]) -> tuple[Entry, ...]:
+def _note_row(name: str, present: Sequence[Result | None]) -> tuple[Entry, ...]:
     """What methods say of their own answers: focal lengths, energies, warnings."""
     values = [None if r is None else r.notes.get(name) for r in present]
     return Entry(f"note: {name.replace('_', ' ')}", f"note:{name}"), *map(_note_entry, values)
@@ -217,32 +207,10 @@ def _note_entry(value: Any) -> Entry:
     return Entry(MISSING) if value is None else Entry(str(value), str(value))
 
 
-def _status_entry(result: Row | None) -> Entry:
+def _status_entry(result: Result | None) -> Entry:
     if result is None:
         return Entry(MISSING)
     return Entry(result.status, result.status, failed=not result.ok)
-
-
-def failures_table(run: Run) -> Table:
-    """Every cell without a measurement, its status and the reason given."""
-    names: tuple[str, ...] = ("scene", "rig", "motion", "pose", "method", "seed", "status", "reason")
-    if any(r.group for r in run.results):
-        names = ("group", *names)
-    rows = tuple(
-        tuple(
-            Entry(str(value) or MISSING, value, failed=name == "status")
-            for name, value in ((name, getattr(r, name)) for name in names)
-        )
-        for r in run.failures
-    )
-    return Table(
-        kind="failures",
-        name="failures",
-        title="Cells without a measurement",
-        caption=f"{len(rows)} of {counted(len(run.results), 'cell')}.",
-        headings=tuple(Heading(n, n, numeric=n == "seed", wraps=n == "reason") for n in names),
-        sections=(Section("", rows),),
-    )
 
 
 def heading(shown_as: Column) -> Heading:
@@ -260,7 +228,7 @@ def _ok_entry(summary: Summary) -> Entry:
     return Entry(text, text, failed=not summary.complete)
 
 
-def _not_ok_entry(summary: Summary, results: Sequence[Row]) -> Entry:
+def _not_ok_entry(summary: Summary, results: Sequence[Result]) -> Entry:
     ended = [r.status for r in results if r.method == summary.method and not r.ok]
     text = ", ".join(f"{ended.count(status)} {status}" for status in dict.fromkeys(ended))
     return Entry(text or MISSING, text, failed=bool(text))
@@ -279,7 +247,7 @@ def _averaged_field(summaries: Sequence[Summary], shown_as: Column) -> list[Entr
     return with_best(entries, shown_as, eligible)
 
 
-def _pairs_text(results: Sequence[Row]) -> str:
+def _pairs_text(results: Sequence[Result]) -> str:
     """How many pairs of which grid, times the seeds where each pair has them all."""
     pairs, places, seeds = (len({getattr(r, of) for r in results}) for of in ("pair", "place", "seed"))
     if seeds > 1 and pairs == places * seeds:
@@ -287,13 +255,13 @@ def _pairs_text(results: Sequence[Row]) -> str:
     return f"{counted(pairs, 'pair')} ({_grid_text(results, ('motion', 'seed'))})"
 
 
-def _photographs_text(results: Sequence[Row]) -> str:
+def _photographs_text(results: Sequence[Result]) -> str:
     """How many pairs of how many rigs."""
     pairs, rigs = (len({getattr(r, of) for r in results}) for of in ("pair", "rig"))
     return f"{counted(pairs, 'pair')} of photographs ({counted(rigs, 'rig')})"
 
 
-def _grid_text(results: Sequence[Row], beside: Sequence[str]) -> str:
+def _grid_text(results: Sequence[Result], beside: Sequence[str]) -> str:
     counts = {name: len({getattr(r, name) for r in results}) for name in ("scene", "rig", *beside)}
     return ", ".join(counted(n, name) for name, n in counts.items() if n > 1 or name not in beside)
 

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
-from rectbench.plugins.metric import Column
+from rectbench.plugins.result import distinct
 from rectbench.reporting.asked import methods_part, part_title
 from rectbench.reporting.figures import EXTENSIONS, Drawn
 from rectbench.reporting.names import slug
-from rectbench.reporting.page.run_facts import Fact, run_facts
 from rectbench.reporting.style import looks
 from rectbench.reporting.tables.table import SPELLINGS, Entry, Table
+from rectbench.runs.record import RunRecord
 from rectbench.runs.run import Run
 
 FIRST = ("Ranking", "Charts", "Poses", "Row error", "Distortion", "Pictures", "Energy", "Random starts")
@@ -32,6 +33,20 @@ _TABLES = {
     "left-out": "Photographs",
 }
 """Under which heading each kind of table stands."""
+_FACTS = {
+    "command": "Command",
+    "data": "Photographs of",
+    "wall_s": "Took",
+    "git_revision": "Git revision",
+    "cpu": "CPU",
+    "cores": "Cores",
+    "jobs": "Jobs",
+    "llvm": "LLVM",
+    "python": "Python",
+    "platform": "Platform",
+    "seeds": "Seeds",
+}
+"""What of run.json is worth a line of its own on the page, and what it is called there."""
 
 
 @dataclass(frozen=True)
@@ -54,34 +69,6 @@ class Part:
     topics: list[Topic]
 
 
-@dataclass(frozen=True)
-class Page:
-    """What the template shows."""
-
-    title: str
-    description: str
-    report: str
-    cells: int
-    failed: int
-    scenes: tuple[str, ...]
-    scenes_called: str
-    rigs: tuple[str, ...]
-    methods: tuple[str, ...]
-    poses: tuple[str, ...]
-    verdicts: Table | None
-    measurements: Table | None
-    parts: list[Part]
-    failures: Table | None
-    tables: list[Table]
-    colours: dict[str, str]
-    glossary: list[Column]
-    facts: list[Fact]
-    full_json: str
-    reproduce: str
-    extensions: tuple[str, ...] = EXTENSIONS
-    spellings: tuple[str, ...] = tuple(SPELLINGS)
-
-
 def render_page(run: Run, tables: Sequence[Table], drawn: Sequence[Drawn]) -> str:
     """index.html as text."""
     from jinja2 import Environment, PackageLoader, StrictUndefined
@@ -94,35 +81,19 @@ def render_page(run: Run, tables: Sequence[Table], drawn: Sequence[Drawn]) -> st
         lstrip_blocks=True,
     )
     environment.globals["sort_value"] = _sort_value
-    of_kind = {table.kind: table for table in tables}
-    page = Page(
-        title=run.record.spec.title,
-        description=run.record.spec.description,
-        report=run.record.report,
-        cells=len(run.results),
-        failed=len(run.failures),
-        scenes=run.scenes,
-        scenes_called=f"{run.pair_source.scene_word}s",
-        rigs=run.rigs,
-        methods=_methods(run),
-        poses=run.poses,
-        verdicts=of_kind.get("claims"),
-        measurements=of_kind.get("measurements"),
+    methods = distinct(m for part in run.parts if (shown := methods_part(part)) for m in shown.methods)
+    return environment.get_template("index.html.j2").render(
+        run=run,
+        record=run.record,
+        methods=methods,
+        of_kind={table.kind: table for table in tables},
         parts=[_part(part, tables, drawn) for part in run.parts],
-        failures=of_kind.get("failures"),
-        tables=list(tables),
+        tables=tables,
         colours={method: look.colour for method, look in looks(run.methods).items()},
-        glossary=[run.catalogue.column(key) for key in run.metrics],
-        facts=run_facts(run),
-        full_json=run.record.to_json("cells"),
-        reproduce=run.record.command,
+        facts=_facts(run.record),
+        extensions=EXTENSIONS,
+        spellings=tuple(SPELLINGS),
     )
-    return environment.get_template("index.html.j2").render(page=page)
-
-
-def _methods(run: Run) -> tuple[str, ...]:
-    parts = [methods for part in run.parts if (methods := methods_part(part))]
-    return tuple(dict.fromkeys(method for part in parts for method in part.methods))
 
 
 def _part(part: Run, tables: Sequence[Table], drawn: Sequence[Drawn]) -> Part:
@@ -148,3 +119,17 @@ def _sort_value(entry: Entry) -> str:
     if isinstance(entry.value, float) and math.isinf(entry.value):
         return "1e308" if entry.value > 0 else "-1e308"
     return entry.stored
+
+
+def _facts(record: RunRecord) -> list[tuple[str, str]]:
+    """What is told of the run by its name, the versions of libraries last; run.json is shown beside them."""
+    told = {**vars(record), "wall_s": f"{record.wall_s:.1f} s"}
+    facts = [(label, _text(told[name])) for name, label in _FACTS.items() if told[name] not in (None, ())]
+    present = [f"{name} {version}" for name, version in record.versions.items() if version is not None]
+    return [*facts, ("Versions", ", ".join(present))]
+
+
+def _text(value: Any) -> str:
+    if isinstance(value, Mapping):
+        return ", ".join(f"{name} {item}" for name, item in value.items() if item is not None)
+    return ", ".join(map(str, value)) if isinstance(value, tuple) else str(value)

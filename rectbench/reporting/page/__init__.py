@@ -1,1 +1,0 @@
-"""The page of a run, and what it says of the run itself. Imports figures and tables."""
