@@ -17,10 +17,11 @@ from rectbench.experiments.tasks import CellTask
 from rectbench.metrics.scoring import metrics_of, needs_of
 from rectbench.pairs.finding.photographs import Photographs
 from rectbench.pairs.spec import ESTIMATED, PairSpec
+from rectbench.plugins.cell import Cell
 from rectbench.plugins.figure import FIGURES, usual_figures
 from rectbench.plugins.fitting import checked_options
 from rectbench.plugins.rectifier import METHODS, Rectifier
-from rectbench.plugins.result import Cell, distinct
+from rectbench.plugins.result import distinct
 from rectbench.registry import Plugin, registry
 from rectbench.rigs.poses import POSES
 from rectbench.store.keys import canonical_json

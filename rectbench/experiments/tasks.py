@@ -7,7 +7,7 @@ from typing import Any
 from pydantic import BaseModel, ConfigDict
 
 from rectbench.pairs.spec import PairSpec
-from rectbench.plugins.result import Cell
+from rectbench.plugins.cell import Cell
 
 
 class CellTask(BaseModel):

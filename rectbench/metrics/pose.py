@@ -13,7 +13,7 @@ class Pose(Metric):
     """How far the pose that the images tell is from the true one; of photographs, from the calibration's."""
 
     name, topic = "pose", "Poses"
-    needs = frozenset({"images", "estimate"})
+    needs = frozenset({"images"})
     columns = (
         _degrees(
             "pose_rotation_error_deg",

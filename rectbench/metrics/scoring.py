@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from copy import copy
 from numbers import Real
 from pathlib import Path
+from typing import Any
 
 from rectbench.errors import InvalidInput, InvalidResult, UnknownName
-from rectbench.plugins.metric import METRICS, Case, Metric, Need
+from rectbench.plugins.metric import METRICS, Case, Known, Metric, Need
 from rectbench.registry import Plugin, is_path, registry
 from rectbench.store.closure import PACKAGE
 
@@ -72,8 +74,38 @@ def score(case: Case, asked: Iterable[str | Path]) -> dict[str, float]:
     wanted = [*asked, POSE] if case.pose_is_estimated else asked
     row: dict[str, float] = {}
     for plugin in metrics_of(wanted).values():
-        row |= _numbers(plugin.value, case)
+        row |= _numbers(plugin.value, _declared(case, plugin.value))
     return row
+
+
+def _declared(case: Case, metric: Metric) -> Case:
+    """The case with a pair that hands out what the metric has declared to need, and images in any event where
+    the pose came from them: the cell's key covers no more."""
+    known: frozenset[Need] = frozenset({"images"}) if case.pose_is_estimated else frozenset()
+    declared = copy(case)
+    object.__setattr__(declared, "pair", _DeclaredPair(case.pair, metric.name, metric.needs | known))
+    return declared
+
+
+class _DeclaredPair:
+    """A pair that refuses the rest."""
+
+    def __init__(self, pair: Known, metric: str, needs: frozenset[Need]) -> None:
+        self._pair, self._metric, self._needs = pair, metric, needs
+
+    def __getattr__(self, name: str) -> Any:
+        need = _NEEDED.get(name)
+        if need and need not in self._needs:
+            who = f"metric {self._metric}"
+            raise InvalidResult(f"{who} asks for {name} of the pair; expected '{need}' in its needs")
+        return getattr(self._pair, name)
+
+
+_NEEDED: Mapping[str, Need] = {
+    **dict.fromkeys(("truth", "true_matches"), "truth"),
+    **dict.fromkeys(("images", "board", "features", "estimate", "shown_matches", "pose_seconds"), "images"),
+}
+"""What a metric must need to be handed a thing of the pair."""
 
 
 def _numbers(metric: Metric, case: Case) -> dict[str, float]:

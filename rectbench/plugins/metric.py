@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
-from functools import cached_property
-from typing import Any, ClassVar, Literal, Protocol, TypeVar
+from collections.abc import Callable, Mapping, Set
+from dataclasses import asdict, dataclass, field
+from typing import Any, ClassVar, Literal, Protocol, TypeVar, get_args
+
+from pydantic import ConfigDict, TypeAdapter, ValidationError
 
 from rectbench.errors import InvalidInput
 from rectbench.images.stereo_pair import StereoPair
 from rectbench.matching import BoardMatches, PoseEstimate
+from rectbench.plugins.cell import IDENTITY
 from rectbench.registry.kind import Described, Kind, described_object
 from rectbench.rendering.truth import Truth
 from rectbench.rigs import Rig
@@ -21,10 +23,13 @@ from rectbench.warps.jacobians import Jacobians
 
 Better = Literal["lower", "higher"]
 Average = Literal["mean", "rms", "max", "min"]
-Need = Literal["truth", "images", "estimate"]
+Need = Literal["truth", "images"]
 Shown = Literal["pairs", "topic", "page", "summary"]
 
 T = TypeVar("T")
+
+RESERVED = {*IDENTITY, "status", "reason", "group", "notes"}
+"""Columns that every row has; a metric's have other keys."""
 
 TOPICS = (
     "Distortion",
@@ -88,6 +93,7 @@ class Column:
     promised: bool = False
     ranks: bool = False
     panel: str = ""
+    __pydantic_config__ = ConfigDict(allow_inf_nan=False)  # as run.json reads it back
 
     def __post_init__(self) -> None:
         """Raises InvalidInput for a tolerance about a number of which neither way is worse."""
@@ -203,10 +209,10 @@ class Case:
         """The true rig; of photographs the calibrated one."""
         return self.pair.rig
 
-    @cached_property
+    @property
     def jacobians(self) -> Jacobians:
         """At the evaluation pixels of both images."""
-        return Jacobians.at(self.rect)
+        return self.once(Jacobians.at)
 
     def once(self, compute: Callable[[Rectification], T]) -> T:
         """`compute` of the rectification, done once however many metrics ask for it."""
@@ -235,7 +241,8 @@ class Metric(ABC):
     topic: ClassVar[str]
     """The heading under which it is shown, see `TOPICS`."""
     needs: ClassVar[frozenset[Need]] = frozenset()
-    """What of the pair it looks at beside the geometry; nothing is rendered that no metric needs."""
+    """What of the pair it looks at beside the geometry: its truth (`truth`, `true_matches`), or its images (with
+    what is found in them). Nothing is rendered that no metric needs, and nothing else is handed out."""
     columns: ClassVar[tuple[Column, ...]]
 
     @abstractmethod
@@ -250,9 +257,28 @@ def _described(value: Any) -> Described[Metric] | None:
         if not isinstance(columns, tuple) or not columns:
             raise InvalidInput(f"{kind}.columns is {columns!r}; expected a tuple")
         for column in columns:
-            if not (isinstance(column, Column) and column.key.isidentifier()):
-                raise InvalidInput(f"{kind}.columns has {column!r}; expected a Column with a key")
+            _check_column(column, kind)
+        keys = [column.key for column in columns]
+        if twice := [key for key in keys if keys.count(key) > 1]:
+            raise InvalidInput(f"{kind}.columns has '{twice[0]}' twice; expected a key of its own for each")
+        needs = described.value.needs
+        if not isinstance(needs, Set) or not needs <= set(get_args(Need)):
+            raise InvalidInput(f"{kind}.needs is {needs!r}; expected a set of {' or '.join(get_args(Need))}")
     return described
+
+
+def _check_column(column: Any, kind: str) -> None:
+    """Raise InvalidInput for what run.json could not hold, or the rows have already."""
+    if not (isinstance(column, Column) and isinstance(column.key, str) and column.key.isidentifier()):
+        raise InvalidInput(f"{kind}.columns has {column!r}; expected a Column with a key")
+    if column.key in RESERVED:
+        raise InvalidInput(f"{kind}.columns has '{column.key}', which every row has; expected another key")
+    try:
+        TypeAdapter(Column).validate_python(asdict(column))
+    except ValidationError as error:
+        fault = error.errors(include_url=False)[0]
+        name, value = ".".join(map(str, fault["loc"])), fault["input"]
+        raise InvalidInput(f"column '{column.key}': {name} is {value!r}; {fault['msg']}") from None
 
 
 METRICS: Kind[Metric] = Kind(

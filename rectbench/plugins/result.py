@@ -7,32 +7,11 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, TypeVar
 
-from pydantic import BaseModel, ConfigDict
-
 from rectbench.plugins.catalogue import Catalogue
+from rectbench.plugins.cell import Cell
 
 EXACT_POSE = "exact"
 Item = TypeVar("Item")
-
-
-class Cell(BaseModel):
-    """Which cell of which report: what its row and its random numbers are named after."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
-    report: str
-    scene: str
-    rig: str
-    motion: str
-    pose: str
-    method: str
-    options: str
-    """The options given, as canonical JSON; "{}" where all are the method's own."""
-    seed: int
-
-
-IDENTITY = tuple(Cell.model_fields)
-"""The columns that say which cell a row is; `status` and `reason` follow, then the metrics."""
 
 
 @dataclass(frozen=True)

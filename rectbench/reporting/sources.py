@@ -12,10 +12,11 @@ from rectbench.matching import Reconstruction, reconstruct
 from rectbench.metrics import Jacobians, distortion, distortion_of
 from rectbench.pairs.opening import open_pair
 from rectbench.pairs.pair import Pair
+from rectbench.plugins.cell import Cell
 from rectbench.plugins.figure import Sources
 from rectbench.plugins.fitting import checked_options, fit
 from rectbench.plugins.rectifier import METHODS
-from rectbench.plugins.result import Cell, Result
+from rectbench.plugins.result import Result
 from rectbench.registry import registry
 from rectbench.runs.record import RUN_FILE
 from rectbench.runs.run import Run

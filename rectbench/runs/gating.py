@@ -16,8 +16,9 @@ import pandas as pd
 from rectbench.errors import InvalidInput, UnknownName
 from rectbench.experiments.spec import REPORTS
 from rectbench.pairs.spec import ESTIMATED
+from rectbench.plugins.cell import IDENTITY, Cell
 from rectbench.plugins.metric import Column
-from rectbench.plugins.result import IDENTITY, Cell, Result
+from rectbench.plugins.result import Result
 from rectbench.registry import registry
 from rectbench.runs.record import read_record
 from rectbench.runs.rows import read_rows

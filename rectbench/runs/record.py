@@ -20,8 +20,8 @@ from rectbench.experiments.tasks import CellTask
 from rectbench.metrics.scoring import metrics_of
 from rectbench.pairs.finding.photographs import UNREADABLE, Photographs
 from rectbench.plugins.catalogue import Catalogue, known
+from rectbench.plugins.cell import IDENTITY
 from rectbench.plugins.metric import Column
-from rectbench.plugins.result import IDENTITY
 from rectbench.registry import is_path
 from rectbench.runs.machine import Machine
 from rectbench.store.keys import canonical_json

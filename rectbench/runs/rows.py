@@ -13,7 +13,8 @@ from pydantic import ConfigDict, Field, Json, ValidationError, field_validator
 
 from rectbench.errors import InvalidInput
 from rectbench.experiments.execution.outcomes import Status
-from rectbench.plugins.result import IDENTITY, Cell, Result, distinct
+from rectbench.plugins.cell import IDENTITY, Cell
+from rectbench.plugins.result import Result, distinct
 from rectbench.runs.record import first_fault
 
 _ALIKE = {"scene", "rig", "motion", "pose", "seed", "status", "reason", "group", "notes"}
