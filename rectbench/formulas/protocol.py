@@ -19,7 +19,7 @@ serves where points are many, differs in this:
 
 - `tan` below 1e-4 is right to 4e-13, which is up to 4e-9 of the value; `tanc` has all digits there.
 - `sin cos tan` have no right digit beyond 2e9 radians.
-- `hypot` is infinite from 1e154 on and 0 below 1e-162; what is below 2e-308 counts as 0 everywhere.
+- `hypot` is infinite from 1e154 on and may be 0 below 1e-153: what is below 2e-308 may count as 0.
 - `atan2` is ±0 where both are 0, whatever their signs, and NaN where both are infinite.
 - `0.0 * x` is 0 and `x != x` is False even where x is NaN.
 """
