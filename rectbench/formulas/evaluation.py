@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rectbench import llvm
-from rectbench.formulas.namespaces import NUMPY, drjit_namespace
+from rectbench.formulas.namespaces import NUMPY, drjit_namespace, is_number
 from rectbench.types import BoolArray, Constants, FloatArray
 
 KERNEL_THRESHOLD = 20_000
@@ -58,7 +58,7 @@ def evaluate(
     from drjit.llvm import Float64
 
     outputs = formula(opaque(constants), *(Float64(column) for column in columns), xp)
-    outputs = tuple(Float64(out) if isinstance(out, float) else out for out in outputs)
+    outputs = tuple(Float64(out) if is_number(out) else out for out in outputs)
     dr.eval(*outputs)
     return tuple(np.broadcast_to(out.numpy(), columns[0].shape) for out in outputs)
 
@@ -108,6 +108,6 @@ def _by_kernel(
     *values, ok = formula(opaque(constants), *columns, xp)
     for number in (*columns, *values):
         ok = ok & dr.isfinite(number)
-    outputs: Any = dr.ravel(jit.ArrayXf64([dr.select(ok, value, math.nan) for value in values]))
+    outputs: Any = dr.ravel(jit.ArrayXf64([xp.where(ok, value, math.nan) for value in values]))
     dr.eval(outputs, ok)
     return outputs.numpy().reshape(count, len(values)), ok.numpy()

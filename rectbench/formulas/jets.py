@@ -65,7 +65,14 @@ class Jet:
         return constant(other) / self
 
     def __pow__(self, exponent: int) -> Jet:
-        return self.chain(self.value**exponent, exponent * self.value ** (exponent - 1))
+        slope = exponent * self.value ** (exponent - 1) if exponent else 0.0
+        return self.chain(self.value**exponent, slope)
+
+    def __eq__(self, other: object) -> Any:  # on values, as the others; so jets have no hash
+        return self.value == constant(other).value
+
+    def __ne__(self, other: object) -> Any:
+        return self.value != constant(other).value
 
     def __lt__(self, other: Any) -> Any:
         return self.value < constant(other).value
@@ -163,11 +170,11 @@ class JetNamespace(Formulas):
 
     def minimum(self, x: Any, y: Any, /) -> Jet:
         a, b = constant(x), constant(y)
-        return self.where(a.value <= b.value, a, b)
+        return self.where(b < a, b, self.where(a <= b, a, a + b))  # neither: one is NaN
 
     def maximum(self, x: Any, y: Any, /) -> Jet:
         a, b = constant(x), constant(y)
-        return self.where(a.value >= b.value, a, b)
+        return self.where(b > a, b, self.where(a >= b, a, a + b))
 
 
 @overload

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import cache
+from numbers import Real
 from types import ModuleType
 from typing import Any
 
@@ -24,6 +25,11 @@ def _functions_of(module: ModuleType, own: Mapping[str, Callable[..., Any]]) -> 
 NUMPY = _functions_of(np, {})
 
 
+def is_number(x: Any) -> bool:
+    """Whether x is one plain number: of those alone Dr.Jit makes int32 or float32, too few digits."""
+    return isinstance(x, Real) and not isinstance(x, bool)
+
+
 @cache
 def drjit_namespace() -> Formulas:
     """The language on Dr.Jit's float64 arrays; what Dr.Jit lacks, or takes otherwise, is stated here."""
@@ -32,15 +38,29 @@ def drjit_namespace() -> Formulas:
     from drjit.llvm import Float64
 
     def where(condition: Any, x: Any, y: Any) -> Any:
-        # Of two plain numbers Dr.Jit would make float32.
-        return dr.select(condition, Float64(x) if isinstance(x, float) else x, y)
+        return dr.select(condition, Float64(x) if is_number(x) else x, y)
+
+    def keep_nan(x: Any, value: Any) -> Any:
+        return dr.select(dr.isnan(x), x, value)
+
+    def atan2(y: Any, x: Any) -> Any:
+        # Of NaN Dr.Jit makes 0, and of y = -0 it takes the upper side of the cut.
+        return keep_nan(x + y, dr.copysign(dr.atan2(y, x), y))
+
+    def log1p(x: Any) -> Any:
+        return dr.select(dr.abs(x) < 0.5, 2.0 * dr.atanh(x / (2.0 + x)), dr.log(1.0 + x))
+
+    def expm1(x: Any) -> Any:
+        return dr.select(dr.abs(x) < 1.0, 2.0 * dr.sinh(0.5 * x) * dr.exp(0.5 * x), dr.exp(x) - 1.0)
 
     own: dict[str, Callable[..., Any]] = {
         "where": where,
         "hypot": lambda x, y: dr.sqrt(x * x + y * y),  # dr.hypot guards against overflow: no ray comes near
         "pow": dr.power,
-        "sign": lambda x: dr.select(x > 0.0, Float64(1.0), dr.select(x < 0.0, Float64(-1.0), 0.0 * x)),
-        "expm1": lambda x: 2.0 * dr.sinh(0.5 * x) * dr.exp(0.5 * x),
-        "log1p": lambda x: 2.0 * dr.atanh(x / (2.0 + x)),
+        "atan": lambda x: keep_nan(x, dr.atan(x)),
+        "atan2": atan2,
+        "sign": lambda x: where(x > 0.0, 1.0, where(x < 0.0, -1.0, dr.abs(x))),  # 0 and NaN stay
+        "expm1": expm1,
+        "log1p": log1p,
     }
     return _functions_of(dr, own)

@@ -10,6 +10,7 @@ from scipy.interpolate import PchipInterpolator
 
 from rectbench import llvm
 from rectbench.formulas import protocol
+from rectbench.formulas.evaluation import KERNEL_THRESHOLD, evaluate, evaluate_points
 from rectbench.formulas.jets import Jet, JetNamespace, constant, variables
 from rectbench.formulas.namespaces import NUMPY, drjit_namespace
 from rectbench.formulas.protocol import ArrayFunctions, Formulas
@@ -158,6 +159,49 @@ def test_what_lies_beyond_a_domain_is_nan(name: str, xp: Formulas) -> None:
         assert np.isnan(numbers(getattr(xp, name)(*arrays(xp, [BEYOND[name]])), 1)).all()
 
 
+@pytest.mark.parametrize("name", sorted(set(NAMES) - {"isfinite", "where", "piecewise"}))
+def test_nan_stays_nan(name: str, xp: Formulas) -> None:
+    pairs = [(math.nan,)] if len(CASES[name][1]) == 1 else [(math.nan, 2.0), (2.0, math.nan)]
+    columns = arrays(xp, *zip(*pairs, strict=True))
+    with np.errstate(all="ignore"):
+        assert np.isnan(numbers(call(name, xp, *columns), len(pairs))).all()
+        assert np.isnan(numbers(call(name, JetNamespace(xp), *variables(*columns)).value, len(pairs))).all()
+
+
+@pytest.mark.parametrize("count", [10, KERNEL_THRESHOLD])
+def test_a_point_whose_value_is_nan_on_the_way_is_invalid(count: int) -> None:
+    def beyond(c: Any, x: Any, xp: Formulas) -> tuple[Any, ...]:
+        return xp.atan2(xp.asin(x), 1.0), x > 0.0
+
+    values, valid = evaluate_points(beyond, {}, np.full((count, 1), 2.0))
+    assert not valid.any()
+    assert np.isnan(values).all()
+
+
+@pytest.mark.parametrize("name", ["log1p", "expm1"])
+def test_logarithms_and_exponentials_keep_their_digits_far_from_0(name: str, xp: Formulas) -> None:
+    at = [
+        -math.inf,
+        -1e4,
+        -40.0,
+        -1.0,
+        -1 + 1e-10,
+        -0.51,
+        -0.49,
+        0.49,
+        0.51,
+        1.0,
+        700.0,
+        1e10,
+        1e300,
+        math.inf,
+    ]
+    with np.errstate(all="ignore"):
+        found = numbers(getattr(xp, name)(*arrays(xp, at)), len(at))
+        expected = getattr(np, name)(np.array(at))
+    np.testing.assert_allclose(found, expected, rtol=1e-13)
+
+
 @pytest.mark.parametrize("name", LIMITS)
 def test_quotients_have_their_limit_and_no_slope_at_0(name: str, xp: Formulas) -> None:
     jet = getattr(JetNamespace(xp), name)(*variables(*arrays(xp, [0.0, -0.0])))
@@ -175,6 +219,8 @@ def test_kinks_and_steps_have_the_stated_values(xp: Formulas) -> None:
     np.testing.assert_array_equal(numbers(xp.piecewise(KNOTS, PIECES, arrays(xp, KNOTS)[0]), 3), PIECES[1:])
     half_turn = xp.atan2(*arrays(xp, [0.0, 1.0, -1.0, 0.0], [-1.0, 0.0, 0.0, 1.0]))
     np.testing.assert_allclose(numbers(half_turn, 4), [math.pi, math.pi / 2, -math.pi / 2, 0.0], rtol=1e-15)
+    below = xp.atan2(*arrays(xp, [-0.0, -0.0], [-1.0, 1.0]))
+    np.testing.assert_allclose(numbers(below, 2), [-math.pi, 0.0], rtol=1e-15)
 
 
 def test_a_choice_hides_what_it_does_not_choose(xp: Formulas) -> None:
@@ -190,11 +236,45 @@ def test_a_choice_between_two_plain_numbers_keeps_all_digits(xp: Formulas) -> No
     np.testing.assert_array_equal(numbers(xp.where(x < 0.0, 0.1, 0.2), 2), [0.1, 0.2])
 
 
+def test_whole_numbers_count_as_real_ones(xp: Formulas) -> None:
+    x = arrays(xp, [-1.0, 1.0])[0]
+    for one, two in ((1, 2), (np.int64(1), np.int64(2)), (1, 2.0)):
+        np.testing.assert_array_equal(numbers(xp.where(x < 0.0, one, two) / 3, 2), [1 / 3, 2 / 3])
+    np.testing.assert_array_equal(numbers(xp.piecewise((0,), (1, 2), x) * 0.1, 2), [0.1, 0.2])
+    (x,) = variables(*arrays(xp, [0.1, 1.3]))
+    jet = JetNamespace(xp).spline((0, 1, 2), ((1, 2, 3), (4, 5, 6)), x)
+    np.testing.assert_allclose(numbers(jet.partials[0], 2), [2 + 6 * 0.1, 5 + 12 * 0.3], rtol=1e-14)
+
+
+@pytest.mark.parametrize("count", [10, KERNEL_THRESHOLD])
+def test_outputs_may_be_plain_numbers(count: int) -> None:
+    def plain(c: Any, x: Any, xp: Formulas) -> tuple[Any, ...]:
+        return 0.1, 2, x > 0.0
+
+    values, _ = evaluate_points(plain, {}, np.ones((count, 1)))
+    np.testing.assert_array_equal(values, np.full((count, 2), [0.1, 2.0]))
+    for found, expected in zip(evaluate(plain, {}, np.ones(count)), (0.1, 2.0, True), strict=True):
+        np.testing.assert_array_equal(found, expected)
+
+
+def test_jets_are_equal_by_value(xp: Formulas) -> None:
+    (x,) = variables(*arrays(xp, [0.0, -0.0, 1.0]))
+    assert numbers(x == 0.0, 3).tolist() == [True, True, False]
+    assert numbers(x != Jet(1.0), 3).tolist() == [True, True, False]
+    with np.errstate(all="ignore"):
+        jet = JetNamespace(xp).where(x == 0.0, 1.0, JetNamespace(xp).sin(x) / x)
+    np.testing.assert_allclose(numbers(jet.value, 3), [1.0, 1.0, math.sin(1.0)], rtol=1e-15)
+    with pytest.raises(TypeError, match="unhashable"):
+        hash(x)
+
+
 def test_whole_powers_serve_any_number(xp: Formulas) -> None:
     (x,) = variables(*arrays(xp, [-1.5, 0.0, 2.0]))
     jet = x**3
     np.testing.assert_allclose(numbers(jet.value, 3), [-3.375, 0.0, 8.0], rtol=1e-15)
     np.testing.assert_allclose(numbers(jet.partials[0], 3), [6.75, 0.0, 12.0], rtol=1e-15)
+    np.testing.assert_array_equal(numbers((x**0).value, 3), 1.0)
+    np.testing.assert_array_equal(numbers((x**0).partials[0], 3), 0.0)
 
 
 def test_isfinite_looks_at_a_jets_value(xp: Formulas) -> None:
