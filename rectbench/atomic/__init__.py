@@ -1,4 +1,4 @@
-"""A stand-in for GCC's libatomic, which Dr.Jit needs and a bare Debian or Ubuntu lacks."""
+"""A stand-in for GCC's libatomic, which Dr.Jit needs and a bare Debian or Ubuntu lacks. Imports nothing."""
 
 from __future__ import annotations
 

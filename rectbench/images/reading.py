@@ -17,6 +17,10 @@ from rectbench.types import Images
 Grey = NDArray[np.uint8]
 Rgb = NDArray[np.uint8]
 
+IMAGE_SUFFIXES = frozenset(
+    {".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".pgm", ".ppm", ".pnm", ".webp", ".jp2", ".exr"}
+)
+"""Of files that are taken for images."""
 BLACK_TO_WHITE = (0.1, 99.8)
 """Percentiles that become black and white where an image is not of 8 bits: a 12-bit sensor fills a
 sixteenth of 16 bits, and a few glints must not darken all else."""

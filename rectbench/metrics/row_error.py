@@ -16,6 +16,9 @@ from rectbench.warps import Rectification
 from rectbench.warps.jacobians import finite
 from rectbench.warps.rectification import in_frame
 
+SCORED_MATCHES = 10_000
+"""True correspondences that it is taken over."""
+
 
 @dataclass(frozen=True, eq=False)
 class RowError:

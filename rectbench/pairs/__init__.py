@@ -1,1 +1,1 @@
-"""The pair under a cell: rendered or photographed, with all that is known of it."""
+"""The pair under a cell: rendered or photographed, and all that is known of it. Imports metrics and below."""

@@ -11,6 +11,7 @@ from typing import ClassVar
 from rectbench.errors import InvalidInput, PoseNotFound
 from rectbench.images.stereo_pair import StereoPair
 from rectbench.matching import BoardMatches, PoseEstimate, board_matches
+from rectbench.metrics.row_error import SCORED_MATCHES
 from rectbench.metrics.timing import warm_seconds
 from rectbench.pairs.estimating import estimate_inputs, estimate_pose, load_estimate, save_estimate
 from rectbench.pairs.spec import ESTIMATED, PhotographedSpec, RenderedSpec
@@ -21,8 +22,6 @@ from rectbench.store.keys import Inputs, derived_seed
 from rectbench.store.store import Store
 from rectbench.types import Matches
 
-SCORED_MATCHES = 10_000
-"""Correspondences the row error is taken over."""
 POSES_KIND = "poses"
 NUMBERS, REASON = "pose.npz", "reason.json"
 

@@ -241,8 +241,8 @@ class Metric(ABC):
     topic: ClassVar[str]
     """The heading under which it is shown, see `TOPICS`."""
     needs: ClassVar[frozenset[Need]] = frozenset()
-    """What of the pair it looks at beside the geometry: its truth (`truth`, `true_matches`), or its images (with
-    what is found in them). Nothing is rendered that no metric needs, and nothing else is handed out."""
+    """What of the pair it looks at beside the geometry: `truth` (its matches too), or `images` (with what is
+    found in them). Nothing is rendered that no metric needs, and nothing else is handed out."""
     columns: ClassVar[tuple[Column, ...]]
 
     @abstractmethod

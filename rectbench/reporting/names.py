@@ -5,11 +5,20 @@ from __future__ import annotations
 import re
 
 from rectbench.plugins.result import Part
+from rectbench.store.keys import digest
+
+LONGEST_STEM = 120
+"""Letters; file systems take 255 bytes, the suffix among them."""
 
 
 def slug(*parts: str) -> str:
-    """A file's stem from names: lower case, hyphens, nothing a shell or LaTeX minds."""
-    return "-".join(filter(None, (re.sub(r"[^a-z0-9]+", "-", part.lower()).strip("-") for part in parts)))
+    """A file's stem from names: lower case, hyphens, nothing a shell or LaTeX minds.
+
+    Names without a letter or digit of these, or too long for a file, give way to a digest.
+    """
+    words = (re.sub(r"[^a-z0-9]+", "-", part.lower()).strip("-") for part in parts)
+    stem = "-".join(filter(None, words))
+    return stem if 0 < len(stem) <= LONGEST_STEM or not any(parts) else digest(list(parts))[:12]
 
 
 def named(part: Part, stem: str, *parts: str) -> str:

@@ -14,7 +14,7 @@ from rectbench.runs.record import LEADING, TEXTS
 from rectbench.runs.run import read_run
 from rectbench.types import FloatArray
 
-RESAMPLES = 2000
+DIFFERENCE_RESAMPLES = 2000
 LEAST_PAIRS = 3
 """Fewer pairs than these carry no interval."""
 
@@ -76,7 +76,9 @@ def _interval(differences: FloatArray) -> tuple[float, float]:
     if len(differences) < LEAST_PAIRS:
         return np.nan, np.nan
     return interval(
-        list(differences[:, None, None]), lambda drawn: np.median(drawn[..., 0, 0], axis=-1), RESAMPLES
+        list(differences[:, None, None]),
+        lambda drawn: np.median(drawn[..., 0, 0], axis=-1),
+        DIFFERENCE_RESAMPLES,
     )
 
 

@@ -20,7 +20,7 @@ from rectbench.plugins.result import Result
 from rectbench.runs.bootstrap import Statistic, interval, stacked
 from rectbench.types import FloatArray
 
-RESAMPLES = 4000
+CLAIM_RESAMPLES = 4000
 
 Place = tuple[str, str, str, str, int]
 """Scene, rig, motion, pose, seed."""
@@ -88,7 +88,7 @@ def _measured(statement: Statement, rows: Sequence[Result]) -> Measured:
     verdict: Verdict = "not measured"
     if len(by_pair) >= _pairs_needed(statement):
         mean = float(_statistic(statement)(stacked(by_pair)))
-        low, high = interval(by_pair, _statistic(statement), RESAMPLES) if cells > 1 else (mean, mean)
+        low, high = interval(by_pair, _statistic(statement), CLAIM_RESAMPLES) if cells > 1 else (mean, mean)
         verdict = _verdict(statement, low, high, failed)
     if cells == 1:  # one number has no interval
         low = high = math.nan

@@ -127,3 +127,39 @@ def test_the_metrics_are_listed(shell: Shell) -> None:
     assert code == 0
     assert "row_error_board" in listed
     assert "Together: distortion, distortion_detail" in listed
+
+
+BAD = {
+    "a key that every row has": ('rb.Column("status", "s")', "'status', which every row has"),
+    "a key twice": ('rb.Column("a", "a"), rb.Column("a", "b")', "'a' twice"),
+    "no such average": ('rb.Column("a", "a", average="median")', "average is 'median'"),
+    "an endless scale": ('rb.Column("a", "a", scale=float("inf"))', "scale is inf"),
+    "no columns": ("", "columns is"),
+    "no such need": ('rb.Column("a", "a")', r"needs is .*'depth'.*expected a set of truth or images"),
+}
+
+
+@pytest.mark.parametrize("fault", BAD)
+def test_what_a_run_could_not_hold_is_refused_before_it(tmp_path: Path, fault: str) -> None:
+    columns, reason = BAD[fault]
+    needs = 'frozenset({"depth"})' if fault == "no such need" else "frozenset()"
+    (tmp_path / "bad.py").write_text(
+        "import rectbench as rb\n\n\nclass Bad(rb.Metric):\n    name, topic = 'bad', 'Shape'\n"
+        f"    needs = {needs}\n    columns = ({columns + ',' if columns else ''})\n\n"
+        "    def compute(self, case):\n        return {}\n"
+    )
+    with pytest.raises(rb.InvalidInput, match=reason) as caught:
+        make_plan(small_report(metrics=(str(tmp_path / "bad.py"),)))
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("thing", ["images", "estimate", "board", "truth", "true_matches"])
+def test_a_metric_is_handed_what_it_declared_and_no_more(tmp_path: Path, thing: str) -> None:
+    (tmp_path / "nosy.py").write_text(
+        "import rectbench as rb\n\n\nclass Nosy(rb.Metric):\n    name, topic = 'nosy', 'Shape'\n"
+        "    columns = (rb.Column('nosy', 'nosy'),)\n\n    def compute(self, case):\n"
+        f"        return {{'nosy': float(bool(case.pair.{thing}))}}\n"
+    )
+    table = run(small_report(metrics=(str(tmp_path / "nosy.py"),), figures=()), tmp_path / "run", jobs=1)
+    assert table["status"].tolist() == ["invalid"]
+    assert f"asks for {thing} of the pair; expected" in table["reason"][0]

@@ -1,1 +1,1 @@
-"""Photographs and calibrations found in a folder."""
+"""Photographs and calibrations found in a folder. Imports calibrations, images and what is below."""

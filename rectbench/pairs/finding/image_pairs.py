@@ -9,9 +9,9 @@ from glob import glob, has_magic
 from pathlib import Path
 
 from rectbench.errors import InvalidInput
+from rectbench.images.reading import IMAGE_SUFFIXES
 from rectbench.pairs.finding.calibrations import home_of
 from rectbench.pairs.finding.names import FilePair, Pairing, paired_folders
-from rectbench.pairs.finding.photographs import IMAGE_SUFFIXES
 
 
 def image_pairs(left: str, right: str) -> Pairing:

@@ -11,6 +11,7 @@ from pathlib import Path
 import cv2
 
 from rectbench.errors import InvalidInput
+from rectbench.images.reading import IMAGE_SUFFIXES
 from rectbench.pairs.finding.calibrations import (
     Calibration,
     found_calibrations,
@@ -22,9 +23,6 @@ from rectbench.pairs.finding.calibrations import (
 from rectbench.pairs.finding.manifest import MANIFEST, read_manifest
 from rectbench.pairs.finding.names import FilePair, LeftOut, paired_files, words_in
 
-IMAGE_SUFFIXES = frozenset(
-    {".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".pgm", ".ppm", ".pnm", ".webp", ".jp2", ".exr"}
-)
 NO_PHOTOGRAPHS = frozenset(
     {"disp", "disparity", "depth", "flow", "seg", "semantic", "label", "labels", "nocc", "occ"}
 )

@@ -1,1 +1,1 @@
-"""Lookup tables, and resampling through them."""
+"""Lookup tables, and resampling through them. Imports warps.warp, formulas and what is below."""

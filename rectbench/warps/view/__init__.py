@@ -1,1 +1,1 @@
-"""What of a view is shown: angles, frames, the pixels that are looked at."""
+"""What of a view is shown: angles, frames, pixels that are looked at. Imports warps and what is below."""
