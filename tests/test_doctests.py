@@ -28,3 +28,9 @@ def test_the_examples_of_a_module_give_what_they_show(
     )
     assert attempted > 0
     assert failed == 0
+
+
+def test_each_public_name_has_an_example() -> None:
+    public = {name: getattr(rectbench, name) for name in rectbench.__all__}
+    without = [n for n, thing in public.items() if callable(thing) and ">>> " not in (thing.__doc__ or "")]
+    assert without == []

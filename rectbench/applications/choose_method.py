@@ -43,7 +43,12 @@ class Candidate:
 
 @dataclass(frozen=True, eq=False)
 class Choice:
-    """The methods that were tried, and the best of them."""
+    """The methods that were tried, and the best of them; see `best_method`.
+
+    >>> import rectbench as rb
+    >>> rb.best_method(rb.load_rig("mynteye").scaled(0.25), methods=["abraham"]).table["status"].tolist()
+    ['ok']
+    """
 
     candidates: tuple[Candidate, ...]
     """The best first; then by rank, those that do not apply last."""
@@ -107,6 +112,10 @@ def best_method(
 
     Raises InvalidInput for a framing in which methods cannot be compared, Unsupported with the reasons
     where no method applies.
+
+    >>> import rectbench as rb
+    >>> rb.best_method(rb.load_rig("mynteye").scaled(0.25), methods=["abraham", "conventional"]).best.method
+    'abraham'
     """
     chosen = framing or Framing()
     if chosen.crop is not None:

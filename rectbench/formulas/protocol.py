@@ -119,7 +119,14 @@ class ArrayFunctions(Protocol):
 
 
 class Formulas(ArrayFunctions, Protocol):
-    """All functions of the language: those of the arrays, and what follows from them on every namespace."""
+    """All functions of the language: those of the arrays, and what follows from them on every namespace.
+
+    >>> from rectbench.formulas.namespaces import NUMPY
+    >>> def mercator(angle, xp: Formulas):
+    ...     return xp.asinh(xp.tan(angle))
+    >>> print(round(mercator(0.5, NUMPY), 6))
+    0.522238
+    """
 
     def sinc(self, x: Any, /) -> Any:
         """sin x / x, 1 at 0. (NumPy's function of this name has π x in the place of x.)"""

@@ -55,7 +55,11 @@ class Look(NamedTuple):
 
 @dataclass(frozen=True)
 class FigureData:
-    """All that a figure is made from."""
+    """All that a figure is made from.
+
+    >>> def coloured(given: FigureData):  # each method in its colour, the same in all figures
+    ...     return {method: given.looks[method].colour for method in given.part.methods}
+    """
 
     part: Part
     """The results to show; those that another figure sets apart are not among them."""
@@ -80,6 +84,9 @@ class Drawing:
     of : the rig, pose or whatever else that tells it from the figure's other drawings.
     dpi : resolution of the PNG, and of images within the other files.
     shown_as : which file the page shows; PNG is better where there are images in it.
+
+    >>> Drawing("tall", "Tallness", "Of every pair.", [1, 2], lambda: None).shown_as
+    'svg'
     """
 
     stem: str
@@ -96,6 +103,20 @@ class Figure(ABC):
     """A figure of a report: one file, one class.
 
     The class's docstring says in its first line what it shows.
+
+    >>> class Histogram(Figure):
+    ...     "Log distortion of all pairs."
+    ...     name, topic = "histogram", "Charts"
+    ...
+    ...     def drawings(self, given):
+    ...         import matplotlib.pyplot as plt
+    ...
+    ...         def draw():
+    ...             figure, axes = plt.subplots()
+    ...             axes.hist([r.metrics["log_distortion"] for r in given.part.results if r.ok])
+    ...             return figure
+    ...
+    ...         yield Drawing("histogram", "Log distortion", "Of every pair.", given.part.results, draw)
     """
 
     name: ClassVar[str]

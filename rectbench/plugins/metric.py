@@ -47,7 +47,12 @@ TOPICS = (
 
 @dataclass(frozen=True)
 class Tolerance:
-    """How far a column may be worse than accepted: by `relative` of the accepted value, plus `absolute`."""
+    """How far a column may be worse than accepted: by `relative` of the accepted value, plus `absolute`.
+
+    >>> column = Column("a_px", "a", "px", "lower", tolerance=Tolerance(relative=0.01, absolute=1e-6))
+    >>> column.change(accepted=100.0, now=100.9), column.change(accepted=100.0, now=101.1)
+    ('same', 'worse')
+    """
 
     relative: float
     absolute: float
@@ -189,7 +194,11 @@ class Known(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class Case:
-    """A rectification to be scored, and what is known of the pair it belongs to."""
+    """A rectification to be scored, and what is known of the pair it belongs to.
+
+    >>> def compute(case: Case):  # of a metric
+    ...     return {"width_px": float(case.rect.size[0]), "baseline_m": case.rig.baseline_m}
+    """
 
     rect: Rectification
     """What the method made of the rig that it believed in."""

@@ -90,7 +90,10 @@ def load_rectification(path: str | os.PathLike[str]) -> Rectification:
 
     Raises InvalidInput in one line that names file, key and what was expected.
 
-    See `save_rectification` for an example.
+    >>> import rectbench as rb
+    >>> rb.save_rectification(rb.rectify(rb.load_rig("mynteye"), "abraham"), "rectified.yaml")
+    >>> rb.load_rectification("rectified.yaml").rig.name
+    'mynteye'
     """
     source = Source.read(path)
     document = parse_document(source.text, source.path)

@@ -24,6 +24,7 @@ from rectbench.experiments.execution.worker import Limits, restrict
 from rectbench.experiments.tasks import CellTask
 from rectbench.store.keys import digest
 from rectbench.store.store import Store
+from rectbench.writing import write_atomically
 
 CONNECT_TIMEOUT_S = 10
 
@@ -89,8 +90,5 @@ def _answer(message: dict[str, Any]) -> Outcome:
 
 
 if __name__ == "__main__":
-    outcome = _answer(json.load(sys.stdin))
-    # Written and then moved, so that a process killed in between has given no answer.
-    unfinished = Path(sys.argv[1]).with_suffix(".unfinished")
-    unfinished.write_text(json.dumps(asdict(outcome)), encoding="utf-8")
-    unfinished.replace(sys.argv[1])
+    # Whole or not at all, so that a process killed in between has given no answer.
+    write_atomically(Path(sys.argv[1]), json.dumps(asdict(_answer(json.load(sys.stdin)))))
