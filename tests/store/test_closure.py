@@ -31,6 +31,7 @@ COMPUTING_BUT_NO_ROWS = {
     "rectbench.plugins.catalogue": "what columns are called and how they are judged",
     "rectbench.plugins.defaults": "a cell names its method",
     "rectbench.plugins.figure": "what is drawn of the rows",
+    "rectbench.plugins.result": "rows as figures and tables ask for them",
     "rectbench.plugins.homography": "in the key of each method that uses it, as its own file is",
 }
 
