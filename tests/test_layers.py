@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import tomllib
 from collections.abc import Iterator
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
@@ -132,3 +133,10 @@ def test_a_crowded_and_a_silent_folder_are_named(tmp_path: Path) -> None:
     (house / "one_more.py").write_text("")
     assert crowded(house) == {str(house): MOST_FILES + 1}
     assert silent(house) == []
+
+
+def test_each_folder_is_installed_with_the_package() -> None:
+    project = tomllib.loads((PACKAGE.parent / "pyproject.toml").read_text(encoding="utf-8"))
+    plugins = ["rectbench_methods", "rectbench_scenes", "rectbench_reports"]
+    folders = {module for module, path in files_by_module(PACKAGE).items() if path.stem == "__init__"}
+    assert set(project["tool"]["setuptools"]["packages"]) == folders | set(plugins)
