@@ -1,0 +1,48 @@
+"""What a design can tell apart: noncentral t, at the level of Holm's first step."""
+
+from __future__ import annotations
+
+import math
+
+from scipy.optimize import brentq
+from scipy.special import nctdtr, stdtrit
+
+POWER = 0.8
+"""A difference is resolved if it is told in this share of benches."""
+ALPHA = 0.05
+"""In this share of benches may any two methods be told apart that are alike."""
+
+
+def power(difference: float, spread: float, units: int, tests: int = 1, alpha: float = ALPHA) -> float:
+    """How often a paired t test over units tells a mean `difference` whose units spread by `spread` (SD).
+
+    `tests` is how many pairs of methods are compared. A test over one unit tells nothing.
+
+    >>> round(power(1.0, 1.0, 10), 2)
+    0.8
+    """
+    if units < 2 or not difference:
+        return 0.0
+    if not spread:
+        return 1.0
+    critical = stdtrit(units - 1, 1 - alpha / (2 * tests))
+    shift = abs(difference) / spread * math.sqrt(units)
+    below, above = nctdtr(units - 1, shift, [-critical, critical])
+    return float(below + 1 - above)
+
+
+def resolved(spread: float, units: int, tests: int = 1, wanted: float = POWER) -> float:
+    """The smallest mean difference that is told with the wanted power; NaN below two units.
+
+    >>> round(resolved(1.0, 10), 2)
+    1.0
+    """
+    if units < 2:
+        return math.nan
+    if not spread:
+        return 0.0
+    ceiling = 1.0
+    while power(ceiling, 1.0, units, tests) < wanted:
+        ceiling *= 2
+    root = brentq(lambda shift: power(shift, 1.0, units, tests) - wanted, 0.0, ceiling)
+    return float(root) * spread
