@@ -4,10 +4,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from rectbench.reporting.charts.scatter import scatter
 
 from rectbench.reporting.charts.bars import bar_chart
 from rectbench.reporting.charts.grouped_bars import draw_bars
-from rectbench.reporting.charts.scatter import scatter
 from rectbench.reporting.style import looks
 from rectbench.runs.run import read_run
 from tests.reporting.runs import METHODS, failed_row, make_row, quick_rows

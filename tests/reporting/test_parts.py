@@ -29,7 +29,7 @@ OURS = "local-homography"
 DEPTH = {"reconstruction_density": 0.9, "reconstruction_completeness": 0.8, "dense_bad_2px": 0.2}
 POSE = {"pose_rotation_error_deg": 0.02, "pose_rotation_sigma_deg": 0.01, "pose_inliers": 300.0}
 TIMES = {"pose_s": 0.9, "fit_s": 0.02, "warp_s": 0.06, "total_s": 0.98}
-KINDS = ["bars", "scatter", "pairs", "maps", "energy", "squares", "clouds"]
+KINDS = ["bars", "coverage-curve", "pairs", "maps", "energy", "squares", "clouds"]
 CLAIM = {
     "name": "Least distortion",
     "says": "It is the least of all, by ±0 %.",

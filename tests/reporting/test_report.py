@@ -190,7 +190,7 @@ def test_a_run_whose_cells_failed_still_has_its_report(
 ) -> None:
     rows = quick_rows(scenes=("street",), rigs=("t265",), poses=("exact",))
     rows = [failed_row("street", "t265", "exact", r["method"]) if r["method"] in failing else r for r in rows]
-    page = write_report(write_run(slim(rows), figures=["bars", "scatter", "maps"]), sources=sources)
+    page = write_report(write_run(slim(rows), figures=["bars", "coverage-curve", "maps"]), sources=sources)
     words = " ".join(Page(page).words)
     assert f"{len(failing)} of 5 cells hold no measurement" in words
     assert "0/1" in words
@@ -236,7 +236,7 @@ def test_a_folder_without_a_run_is_refused_and_left_alone(write_run: WriteRun, m
 
 def test_a_damaged_manifest_only_costs_time(write_run: WriteRun, sources: Sources) -> None:
     rows = quick_rows(scenes=("street",), rigs=("t265",), poses=("exact",), methods=("abraham",))
-    folder = write_run(rows, figures=["scatter"])
+    folder = write_run(rows, figures=["coverage-curve"])
     write_report(folder, sources=sources)
     (folder / "figures/manifest.json").write_text('{"figures": 3')
     write_report(folder, sources=sources)

@@ -10,9 +10,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from rectbench.reporting.tables.main_tables import main_tables
+from rectbench.reporting.tables.pair_tables import pair_tables
 from rectbench.reporting.tables.part_tables import all_tables
+from rectbench.reporting.tables.rig_tables import distortion_table
 from rectbench.reporting.tables.table import Table, escape_latex, to_csv, to_latex, to_markdown
-from rectbench.reporting.tables.tabulation import distortion_table, main_tables, pair_tables
 from rectbench.runs.run import read_run
 from tests.reporting.runs import RIGS, SCENES, failed_row, make_row, quick_rows
 

@@ -11,7 +11,7 @@ from rich.table import Table
 from rich.text import Text
 
 from rectbench.cli.printing.screen import console, plain_table
-from rectbench.reporting.tables.tabulation import main_tables
+from rectbench.reporting.tables.main_tables import main_tables
 from rectbench.runs.run import read_run
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from itertools import product
 from rectbench.plugins.figure import Drawing, Figure, FigureData
 from rectbench.plugins.result import Part, Result
 from rectbench.reporting.charts.grouped_bars import Bar, BarChart, bar_drawing, bar_of
-from rectbench.reporting.names import pair_labels
+from rectbench.reporting.names import NO_SCENE, pair_labels
 
 _BOUNDED = ("distortion_rescaled", "distortion_stretched")
 """Never far above 1, as every image may be shrunk: a logarithmic axis would hide a third more or less."""
@@ -27,8 +27,13 @@ class Bars(Figure):
     usual = 1
 
     def drawings(self, given: FigureData) -> Iterator[Drawing]:
-        """A chart a metric; of a part of a report, or of photographs, all ways to measure a thing in one."""
+        """A chart a metric; of a part of a report, or of photographs, all ways to measure a thing in one.
+
+        None of pairs without a scene: they are many, and curves tell more of them.
+        """
         part = given.part
+        if part.scenes == (NO_SCENE,):
+            return iter(())
         return _by_pair(given) if part.group or not part.has_truth else _by_scene(given)
 
 
