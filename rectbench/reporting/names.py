@@ -29,7 +29,7 @@ def named(part: Part, stem: str, *parts: str) -> str:
 
 
 def pair_labels(run: Part) -> dict[tuple[str, str, str], str]:
-    """A label of each (scene, rig, motion): the scene, if any, over the rig; the motion where two are alike."""
+    """A label of each (scene, rig, motion): any scene over the rig; the motion where two are alike."""
     places = list(dict.fromkeys(r.place for r in run.results))
     short = {place: place[1] if place[0] == NO_SCENE else f"{place[0]}\n{place[1]}" for place in places}
     if len(set(short.values())) == len(places):

@@ -46,7 +46,7 @@ NOTES = {
 
 
 def view_columns(rig: str, method: str, factor: float = 1.0) -> dict[str, float]:
-    """Log distortion on growing shares of the view, little in the middle of perspective images, and the view."""
+    """Log distortion on growing shares of the view, next to none in the middle of perspective images."""
     whole, _, kept = METHODS.get(method, (0.5, 0.5, 0.9))
     power = 2.5 if method in PERSPECTIVE else 0.5
     columns = {"view_kept": min(1.0, kept)}

@@ -100,9 +100,7 @@ def records(table: Table) -> list[dict[str, str]]:
 
 
 def test_every_kind_of_figure_is_there_once_under_its_part_s_name(reported: Path) -> None:
-    stems = {
-        f"{kind}-fisheye" for kind in ("row-error", "distortion", "log-distortion", "distortion-coverage")
-    }
+    stems = {f"{kind}-fisheye" for kind in ("row-error", "distortion", "distortion-coverage")}
     stems |= {f"{k}-fisheye-t265" for k in ("rectified", "distortion-map", "squares", "energy", "clouds")}
     stems |= {"starts", "timing"}
     found = {path.name for path in (reported / "figures").iterdir()} - {"manifest.json"}

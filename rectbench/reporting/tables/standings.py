@@ -57,12 +57,13 @@ def standing(summaries: Sequence[Summary], results: Sequence[Result], catalogue:
         return True, summary.failed, -len(values[method]), -kept, method
 
     ordered = tuple(sorted(summaries, key=nearness))
+    is_of_view = bool(rigs) or any(KEPT in r.metrics for r in results)
     return Standing(
         summaries=ordered,
         ranks={method: _rank_text(*places) for method, places in found.ranks.items()},
         design=_design_text(found) if rigs else "",
-        order=_order_text(found, catalogue) if rigs else "",
-        behind=tuple(s.method for s in ordered if rigs and s.method in behind),
+        order=_order_text(found, catalogue) if len(behind) < len(ordered) else "",
+        behind=tuple(s.method for s in ordered if is_of_view and s.method in behind),
     )
 
 
@@ -91,11 +92,9 @@ def _design_text(found: Ranking) -> str:
 def _ratio_text(ratio: float) -> str:
     if not math.isfinite(ratio):
         return "no difference"
-    return (
-        f"{three_digits(100 * (ratio - 1))} % difference"
-        if ratio < _TWICE
-        else f"a factor of {three_digits(ratio)}"
-    )
+    if ratio < _TWICE:
+        return f"a difference of {three_digits(100 * (ratio - 1))} %"
+    return f"a factor of {three_digits(ratio)}"
 
 
 def _order_text(found: Ranking, catalogue: Catalogue) -> str:

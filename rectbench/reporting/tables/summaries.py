@@ -13,6 +13,8 @@ from rectbench.statistics.intervals import Interval, mean_interval, nested_means
 _SMALLEST = 1e-300
 """What a zero counts as in a geometric mean, where its column has no floor."""
 
+_LARGEST = 1e150
+"""Of numbers whose squares a float can hold; beyond, infinities among them, there is no interval."""
 _LARGEST_LOG = 709.0
 """Of numbers that a float can hold."""
 
@@ -80,7 +82,7 @@ def averaged(column: Column, results: Iterable[Result]) -> Averaged:
     least = max(column.floor, _SMALLEST) if column.average == "geometric" else -math.inf
     units = nested_means({label: onto(max(value, least)) for label, value in labelled.items()})
     by_rig = {str(rig): back(value) for rig, value in units.items()}
-    if not all(map(math.isfinite, units.values())):
+    if max(map(abs, units.values())) > _LARGEST:
         return Averaged(back(math.fsum(units.values()) / len(units)), len(labelled), by_rig)
     found = mean_interval(units.values())
     interval = Interval(back(found.estimate), back(found.low), back(found.high), found.units)
