@@ -146,7 +146,7 @@ def test_the_rigs_have_a_row_each_and_their_geometric_mean_the_last(write_run: W
     assert table is not None
     assert [row[0].text for row in table.rows] == [*SIX, "geometric mean"]
     assert [heading.text for heading in table.headings][-2:] == ["abraham", "conventional"]
-    assert table.rows[0][-1].text == "(80.0 %)"
+    assert table.rows[0][-1].text == "(80.0\u00a0%)"
     assert table.rows[0][-1].value is None
     assert table.rows[-1][-2].value == pytest.approx(0.3)
     assert table.rows[-1][-2].text == "0.300 (0.289–0.311)"

@@ -92,7 +92,7 @@ def _value_or_kept(results: Sequence[Result], ranking: Column) -> Entry:
     found, kept = averaged(ranking, results), averaged(_KEPT, results)
     if results and found.count == len(results):
         return number(found.value, ranking)
-    return Entry(MISSING if kept.value is None else f"({shown(kept.value, _KEPT)} %)")
+    return Entry(MISSING if kept.value is None else f"({shown(kept.value, _KEPT)}\u00a0%)")
 
 
 def _mean_row(found: Standing, ranking: Column, labels: int, views: int) -> tuple[Entry, ...]:
