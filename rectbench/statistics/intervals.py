@@ -8,6 +8,7 @@ the units allow.
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Hashable, Iterable, Mapping
 from dataclasses import dataclass
 
@@ -19,11 +20,14 @@ from rectbench.types import FloatArray
 
 LEAST_UNITS = 3
 """Fewer units carry no interval: with two it would be 9 times as wide as their distance."""
+LARGEST_LOG = math.log(sys.float_info.max)
 
 
 @dataclass(frozen=True)
 class Interval:
-    """An estimate and the ends of its interval; `low` and `high` are NaN where the units are too few for one.
+    """An estimate and the ends of its interval.
+
+    `low` and `high` are NaN where the units are too few for an interval, or one of them is infinite.
 
     >>> mean_interval([1.0, 2.0]).why_none
     '2 units: too few for an interval'
@@ -37,7 +41,9 @@ class Interval:
     @property
     def why_none(self) -> str:
         """What stands in the place of the interval where there is none; empty where there is one."""
-        return "" if math.isfinite(self.low) else f"{counted(self.units)}: too few for an interval"
+        if self.units < LEAST_UNITS:
+            return f"{counted(self.units)}: too few for an interval"
+        return "unbounded" if math.isnan(self.low) else ""
 
 
 def mean_interval(values: Iterable[float], level: float = 0.95) -> Interval:
@@ -66,7 +72,7 @@ def geometric_interval(values: Iterable[float], level: float = 0.95) -> Interval
     if wrong := [value for value in numbers if not value > 0]:
         raise InvalidInput(f"a value is {wrong[0]:g}; expected numbers above 0 for a geometric mean")
     logs = mean_interval(map(math.log, numbers), level)
-    return Interval(math.exp(logs.estimate), math.exp(logs.low), math.exp(logs.high), logs.units)
+    return Interval(ratio(logs.estimate), ratio(logs.low), ratio(logs.high), logs.units)
 
 
 def count_interval(successes: int, trials: int, level: float = 0.95) -> Interval:
@@ -112,15 +118,21 @@ def margins(values: FloatArray, level: float = 0.95) -> FloatArray:
     units = values.shape[-1]
     if units < LEAST_UNITS:
         return np.full(values.shape[:-1], math.nan)
-    spread = np.std(values, axis=-1, ddof=1)
+    with np.errstate(invalid="ignore"):  # infinite values have no spread
+        spread = np.std(values, axis=-1, ddof=1)
     margin: FloatArray = stdtrit(units - 1, (1 + level) / 2) * spread / math.sqrt(units)
     return margin
 
 
-def counted(units: int) -> str:
+def ratio(log: float) -> float:
+    """The number of which this is the logarithm; infinite where it is too large for a float."""
+    return math.inf if log > LARGEST_LOG else math.exp(log)
+
+
+def counted(units: int, unit: str = "unit") -> str:
     """How many units there are, in words.
 
-    >>> counted(1)
-    '1 unit'
+    >>> counted(1), counted(2, "rig")
+    ('1 unit', '2 rigs')
     """
-    return f"{units} unit" if units == 1 else f"{units} units"
+    return f"{units} {unit}{'' if units == 1 else 's'}"
