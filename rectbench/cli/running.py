@@ -82,7 +82,7 @@ def compare(
     b: Annotated[Path, Argument(metavar="B", help="Another.")],
     metrics: Annotated[list[str] | None, Option(metavar="NAMES", help="Only these columns.")] = None,
 ) -> int:
-    """Compare two runs cell by cell: the median change B - A of every metric, with its 95 % interval."""
+    """Compare two runs cell by cell: how much each metric changed, with its 95 % interval over rigs."""
     from rectbench.cli.printing.running import show_comparison
     from rectbench.runs import comparing
 

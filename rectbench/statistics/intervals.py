@@ -29,8 +29,8 @@ class Interval:
 
     `low` and `high` are NaN where the units are too few for an interval, or one of them is infinite.
 
-    >>> mean_interval([1.0, 2.0]).why_none
-    '2 units: too few for an interval'
+    >>> mean_interval([1.0, 2.0]).why_none("rig")
+    '2 rigs: too few for an interval'
     """
 
     estimate: float
@@ -38,11 +38,10 @@ class Interval:
     high: float
     units: int
 
-    @property
-    def why_none(self) -> str:
+    def why_none(self, unit: str = "unit") -> str:
         """What stands in the place of the interval where there is none; empty where there is one."""
         if self.units < LEAST_UNITS:
-            return f"{counted(self.units)}: too few for an interval"
+            return f"{counted(self.units, unit)}: too few for an interval"
         return "unbounded" if math.isnan(self.low) else ""
 
 

@@ -87,12 +87,12 @@ def signed_rank_caveat(units: int, unit: str = "unit") -> str:
     """What is to be said of ranks over so few units that no signed-rank test could back them; else empty.
 
     >>> signed_rank_caveat(5, "rig")
-    '5 rigs: below 6 no signed-rank test reaches 0.05; ranks rest on t tests, which take log ratios for normal'
+    '5 rigs: below 6 no signed-rank test reaches 0.05; ranks rest on t tests of log ratios, taken for normal'
     """
     if not LEAST_UNITS <= units < LEAST_SIGNED_RANK_UNITS:
         return ""
     below = f"below {LEAST_SIGNED_RANK_UNITS} no signed-rank test reaches 0.05"
-    return f"{counted(units, unit)}: {below}; ranks rest on t tests, which take log ratios for normal"
+    return f"{counted(units, unit)}: {below}; ranks rest on t tests of log ratios, taken for normal"
 
 
 def _why_none(order: list[str], ranked: list[str], units: int, unit: str) -> str:

@@ -90,18 +90,18 @@ def test_too_few_units_have_words_in_the_place_of_an_interval(values: list[float
     assert math.isnan(found.low)
     assert math.isnan(found.high)
     count = sum(not math.isnan(value) for value in values)
-    assert found.why_none == f"{count} unit{'s' if count != 1 else ''}: too few for an interval"
+    assert found.why_none() == f"{count} unit{'s' if count != 1 else ''}: too few for an interval"
 
 
 def test_an_infinite_unit_leaves_no_interval_and_no_warning(recwarn: pytest.WarningsRecorder) -> None:
-    assert mean_interval([1.0, 2.0, math.inf]).why_none == "unbounded"
-    assert geometric_interval([1.0, 2.0, math.inf]).why_none == "unbounded"
+    assert mean_interval([1.0, 2.0, math.inf]).why_none() == "unbounded"
+    assert geometric_interval([1.0, 2.0, math.inf]).why_none() == "unbounded"
     assert geometric_interval([1e-300, 1e300, 1.0]).high == math.inf
     assert not recwarn.list
 
 
 def test_an_interval_that_is_there_needs_no_words() -> None:
-    assert Interval(1.0, 0.5, 1.5, 3).why_none == ""
+    assert Interval(1.0, 0.5, 1.5, 3).why_none() == ""
 
 
 def test_a_unit_is_the_mean_of_its_scenes_and_not_of_its_seeds() -> None:

@@ -107,13 +107,13 @@ def test_rounding_tells_no_methods_apart(noise: float) -> None:
 
 
 def test_what_is_below_the_floor_is_a_tie_however_often_it_is_smaller() -> None:
-    exact = {unit: 1e-13 for unit in range(12)}
-    also_exact = {unit: 5e-13 for unit in range(12)}
-    zero = {unit: 0.0 for unit in range(12)}
-    far = {unit: 1.0 for unit in range(12)}
+    exact = dict.fromkeys(range(12), 1e-13)
+    also_exact = dict.fromkeys(range(12), 5e-13)
+    zero = dict.fromkeys(range(12), 0.0)
+    far = dict.fromkeys(range(12), 1.0)
     ranking = rank({"a": exact, "b": also_exact, "c": zero, "d": far})
     assert ranking.ranks == {"a": (1, 3), "b": (1, 3), "c": (1, 3), "d": (4, 4)}
-    assert rank({"a": far, "b": {unit: 2.0 for unit in range(12)}}, floor=3.0).ranks["a"] == (1, 2)
+    assert rank({"a": far, "b": dict.fromkeys(range(12), 2.0)}, floor=3.0).ranks["a"] == (1, 2)
 
 
 def test_a_difference_that_is_the_same_everywhere_is_told() -> None:
