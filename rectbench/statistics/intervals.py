@@ -11,6 +11,7 @@ import math
 import sys
 from collections.abc import Hashable, Iterable, Mapping
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 from scipy.special import betaincinv, stdtrit
@@ -21,6 +22,8 @@ from rectbench.types import FloatArray
 LEAST_UNITS = 3
 """Fewer units carry no interval: with two it would be 9 times as wide as their distance."""
 LARGEST_LOG = math.log(sys.float_info.max)
+Path = TypeVar("Path", bound=tuple[Hashable, ...])
+"""From a unit down to what is nested in it."""
 
 
 @dataclass(frozen=True)
@@ -93,7 +96,7 @@ def count_interval(successes: int, trials: int, level: float = 0.95) -> Interval
     return Interval(successes / trials, float(low), float(high), trials)
 
 
-def nested_means(labelled: Mapping[tuple[Hashable, ...], float]) -> dict[Hashable, float]:
+def nested_means(labelled: Mapping[Path, float]) -> dict[Hashable, float]:
     """The value of each unit: the mean over its motions of the mean over scenes of the mean over seeds.
 
     Keys are (unit, motion, scene, seed), of any depth, the same for all; values that are NaN are left
@@ -103,7 +106,9 @@ def nested_means(labelled: Mapping[tuple[Hashable, ...], float]) -> dict[Hashabl
     >>> nested_means({**street, ("t265", "room", 0): 6.0, ("tumvi", "room", 0): 5.0})
     {'t265': 4.0, 'tumvi': 5.0}
     """
-    means = {tuple(key): value for key, value in labelled.items() if not math.isnan(value)}
+    means: dict[tuple[Hashable, ...], float] = {
+        key: value for key, value in labelled.items() if not math.isnan(value)
+    }
     while means and len(next(iter(means))) > 1:
         groups: dict[tuple[Hashable, ...], list[float]] = {}
         for key, value in means.items():

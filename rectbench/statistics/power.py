@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from scipy.optimize import brentq
-from scipy.special import nctdtr, stdtrit
+from scipy.special import gammaincinv, nctdtr, stdtrit
 
 POWER = 0.8
 """A difference is resolved if it is told in this share of benches."""
@@ -46,3 +46,14 @@ def resolved(spread: float, units: int, tests: int = 1, wanted: float = POWER) -
         ceiling *= 2
     root = brentq(lambda shift: power(shift, 1.0, units, tests) - wanted, 0.0, ceiling)
     return float(root) * spread
+
+
+def variance_factors(units: int, level: float = 0.95) -> tuple[float, float]:
+    """The ends of the interval of a variance that is known from so many units, as factors of the estimate.
+
+    >>> low, high = variance_factors(10)
+    >>> round(low, 2), round(high, 2)
+    (0.47, 3.33)
+    """
+    half, tail = (units - 1) / 2, (1 - level) / 2
+    return float(half / gammaincinv(half, 1 - tail)), float(half / gammaincinv(half, tail))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Hashable, Mapping
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 
@@ -13,8 +14,7 @@ from rectbench.statistics.paired import NOISE, better, log_ratios
 from rectbench.statistics.power import resolved
 from rectbench.types import FloatArray
 
-Values = Mapping[str, Mapping[Hashable, float]]
-"""By method and unit; lower is better."""
+Unit = TypeVar("Unit", bound=Hashable)
 
 
 LEAST_SIGNED_RANK_UNITS = 6
@@ -43,7 +43,7 @@ class Ranking:
     reason: str
 
 
-def rank(values: Values, *, floor: float = NOISE, unit: str = "unit") -> Ranking:
+def rank(values: Mapping[str, Mapping[Unit, float]], *, floor: float = NOISE, unit: str = "unit") -> Ranking:
     """Rank methods by their values on each unit, lower being better.
 
     Parameters
@@ -111,5 +111,5 @@ def _resolves(logs: FloatArray) -> float | None:
     return ratio(resolved(float(np.median(spreads)), logs.shape[-1], tests=len(first)))
 
 
-def _mean_log(numbers: Mapping[Hashable, float]) -> float:
+def _mean_log(numbers: Mapping[Unit, float]) -> float:
     return math.fsum(map(math.log, numbers.values())) / len(numbers) if numbers else math.inf
