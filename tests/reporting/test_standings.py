@@ -124,6 +124,14 @@ def test_a_run_that_measures_no_distortion_is_not_said_to_be_ranked(write_run: W
     assert caption == "Means over 6 rigs (1 scene each)."
 
 
+def test_below_six_rigs_the_table_says_what_its_ranks_rest_on(write_run: WriteRun) -> None:
+    values = {"abraham": around(0.3), "local-homography": around(0.2, np.roll(UNEVEN, 1))}
+    five = {method: dict(list(by_rig.items())[:5]) for method, by_rig in values.items()}
+    for of, expected in ((five, True), (values, False)):
+        table = only_table(read_run(write_run(rows_of(of))))
+        assert any("no signed-rank test reaches 0.05" in note for note in table.notes) == expected
+
+
 @pytest.mark.parametrize("seeds", [1, 4])
 def test_seeds_and_scenes_of_a_rig_narrow_no_interval(write_run: WriteRun, seeds: int) -> None:
     rows = [

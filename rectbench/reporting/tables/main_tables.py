@@ -61,7 +61,7 @@ def _main_table(run: Run, pose: str) -> Table:
             fields.append(intervals)
     scene = "scene" if run.has_truth else "photographed pair"
     told = [found.design, found.order, averages_text(results, columns, scene)]
-    notes = [behind_text(found, run.catalogue), f"{PARTIAL}." if failing else ""]
+    notes = [behind_text(found, run.catalogue), found.caveat, f"{PARTIAL}." if failing else ""]
     return Table(
         kind="main",
         part=run.group,

@@ -53,9 +53,6 @@ def rig_table(run: Run) -> Table | None:
     methods = [s.method for s in found.summaries]
     views = measured(run, [run.catalogue.column(view_key(ranked_share(run.catalogue)))])
     rows = tuple(_rig_row(run, place, methods, views) for place in places)
-    values = {
-        s.method: s.averages[ranking.key].by_rig for s in found.summaries if s.method not in found.behind
-    }
     has_gaps = any(entry.value is None and entry.text != MISSING for row in rows for entry in row)
     gaps = "In brackets: the share of the view that a method keeps, where it has no number."
     words_of = ("rig", "motion") if len(run.motions) > 1 else ("rig",)
@@ -68,7 +65,7 @@ def rig_table(run: Run) -> Table | None:
         f"average over {units_text(results)}, with its 95 % interval where they are three or more.",
         headings=(*map(text_heading, words_of), *map(heading, views), *(Heading(m, m) for m in methods)),
         sections=(Section("", rows), Section("", (_mean_row(found, ranking, len(words_of), len(views)),))),
-        notes=(*reversals(values, ranking), *[gaps] * has_gaps),
+        notes=(*reversals(found.values, ranking), *[gaps] * has_gaps),
     )
 
 

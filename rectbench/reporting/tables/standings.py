@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from rectbench.plugins.catalogue import Catalogue
@@ -13,7 +13,8 @@ from rectbench.reporting.curves import KEPT, ranked_by, ranked_share
 from rectbench.reporting.tables.captions import listed
 from rectbench.reporting.tables.numbers import three_digits
 from rectbench.reporting.tables.summaries import Summary, averaged
-from rectbench.statistics.ranking import Ranking, rank
+from rectbench.runs.units import by_rig, floor_of
+from rectbench.statistics.ranking import Ranking, rank, signed_rank_caveat
 
 _KEPT = Column(KEPT, "view kept")
 _TWICE = 2.0
@@ -32,6 +33,8 @@ class Standing:
     design : what these rigs can tell apart, a sentence.
     order : by what the methods stand in their order, a sentence.
     behind : the methods without a number on every pair.
+    values : of the others, by method and rig.
+    caveat : what the rigs are too few for; empty where they are not.
     """
 
     summaries: tuple[Summary, ...]
@@ -39,13 +42,15 @@ class Standing:
     design: str
     order: str
     behind: tuple[str, ...]
+    values: Mapping[str, Mapping[str, float]]
+    caveat: str
 
 
 def standing(summaries: Sequence[Summary], results: Sequence[Result], catalogue: Catalogue) -> Standing:
     """Of the methods that are summarised, by the ranking column of their results."""
     column = catalogue.ranking
-    values = {s.method: _by_rig(s.method, results, column) for s in summaries}
-    found = rank(values, floor=column.floor, unit="rig")
+    values = by_rig(results, column)
+    found = rank(values, floor=floor_of(column), unit="rig")
     rigs = {rig for numbers in values.values() for rig in numbers}
     behind = {method for method, numbers in values.items() if not rigs or len(numbers) < len(rigs)}
 
@@ -64,14 +69,9 @@ def standing(summaries: Sequence[Summary], results: Sequence[Result], catalogue:
         design=_design_text(found) if rigs else "",
         order=_order_text(found, catalogue) if len(behind) < len(ordered) else "",
         behind=tuple(s.method for s in ordered if is_of_view and s.method in behind),
+        values={s.method: values[s.method] for s in ordered if s.method not in behind},
+        caveat=f"{caveat}." if (caveat := signed_rank_caveat(found.units, "rig")) and found.ranks else "",
     )
-
-
-def _by_rig(method: str, results: Sequence[Result], column: Column) -> dict[Hashable, float]:
-    """The method's value on each rig on all of whose pairs it has one."""
-    mine = [r for r in results if r.method == method]
-    lacking = {r.rig for r in mine if not r.ok or column.key not in r.metrics}
-    return {rig: value for rig, value in averaged(column, mine).by_rig.items() if rig not in lacking}
 
 
 def _rank_text(first: int, last: int) -> str:

@@ -8,10 +8,8 @@ from dataclasses import dataclass, field
 
 from rectbench.plugins.metric import Average, Column
 from rectbench.plugins.result import Result
+from rectbench.runs.units import floor_of
 from rectbench.statistics.intervals import Interval, mean_interval, nested_means
-
-_SMALLEST = 1e-300
-"""What a zero counts as in a geometric mean, where its column has no floor."""
 
 _LARGEST = 1e150
 """Of numbers whose squares a float can hold; beyond, infinities among them, there is no interval."""
@@ -79,7 +77,7 @@ def averaged(column: Column, results: Iterable[Result]) -> Averaged:
     if column.average in _EXTREMES:
         return _extreme(_EXTREMES[column.average], labelled)
     onto, back = _SCALES[column.average]
-    least = max(column.floor, _SMALLEST) if column.average == "geometric" else -math.inf
+    least = floor_of(column) if column.average == "geometric" else -math.inf
     units = nested_means({label: onto(max(value, least)) for label, value in labelled.items()})
     by_rig = {str(rig): back(value) for rig, value in units.items()}
     if max(map(abs, units.values())) > _LARGEST:
