@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -36,7 +38,7 @@ def test_a_share_holds_its_share_of_the_pixels_and_lies_in_every_larger_one(pair
         inside = [scored.within(everywhere, share) for share in SHARES]
         for share, mask in zip(SHARES[:-1], inside[:-1], strict=True):
             assert mask.sum() / seen.sum() == pytest.approx(share, abs=0.03)
-        assert all((smaller <= larger).all() for smaller, larger in zip(inside, inside[1:], strict=False))
+        assert all((smaller <= larger).all() for smaller, larger in itertools.pairwise(inside))
         first = scored.pixels[: scored.count(0.5)]
         assert scored.within(first, 0.5).all()
         assert not scored.within(scored.pixels[scored.count(0.5) :], 0.5).any()
