@@ -1,6 +1,7 @@
 from . import metrics as metrics
 from .api import estimate_pose as estimate_pose
 from .api import export_dataset as export_dataset
+from .api import plan as plan
 from .api import rectify as rectify
 from .api import rectify_images as rectify_images
 from .api import render as render

@@ -17,7 +17,7 @@ CELLS = "rectbench.experiments.execution.cells"
 
 WITHOUT_ROWS = (
     *("api", "applications", "cli", "progress"),  # verbs
-    *("reporting", "runs"),  # what is done with rows
+    *("reporting", "runs", "statistics"),  # what is done with rows
     *(
         "calibrations",
         "experiments",

@@ -1,0 +1,1 @@
+"""What numbers decide: intervals, ranks and designs, from arrays and mappings alone."""
