@@ -59,6 +59,8 @@ from .rendering.world import Sun as Sun
 from .rendering.world import World as World
 from .rigs import Rig as Rig
 from .rigs import RigCovariance as RigCovariance
+from .scored import Delivered as Delivered
+from .scored import ScoredView as ScoredView
 from .types import Images as Images
 from .types import Matches as Matches
 from .warps import Cubic as Cubic
