@@ -21,8 +21,8 @@ class RigCurves:
     Parameters
     ----------
     rig : its name.
-    views_deg : full angle of the cone about the middle that a share (%) of the source pixels lies in,
-        average over motions; empty where it was not measured.
+    views_deg : horizontal field of view of a share (%) of the view, average over motions; empty where it
+        was not measured.
     curves : by method, log distortion by share (%), ascending; it ends where the method keeps no more on
         some pair.
     kept : by method, the largest share (%) that it keeps on every pair of the rig, where measured.

@@ -82,6 +82,8 @@ def make_row(scene: str, rig: str, pose: str, method: str, seed: int = 0, **chan
         "row_error_rms_px": 1.3 * error,
         "row_error_below_1px": 1.0 if exact else 0.93,
         "row_error_source_mean_px": 1.1 * error,
+        "row_error_50_mean_px": 0.7 * error,
+        "row_error_95_mean_px": 0.9 * error if kept >= 0.95 else float("nan"),
         "row_error_matches": 8123.0,
         "log_distortion": log_distortion * jitter,
         "log_distortion_area": 0.7 * log_distortion * jitter,

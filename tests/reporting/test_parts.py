@@ -109,7 +109,9 @@ def test_every_kind_of_figure_is_there_once_under_its_part_s_name(reported: Path
 
 def test_every_table_is_there_once_under_its_part_s_name(reported: Path) -> None:
     stems = {"claims", "claims-measured", "failures", "starts", "timing", "pair-timing-street-t265"}
-    stems |= {f"{k}-fisheye" for k in ("distortion", "row-error", "pose", "reconstruction", "energy")}
+    stems |= {
+        f"{k}-fisheye" for k in ("distortion", "row-error", "coverage", "pose", "reconstruction", "energy")
+    }
     stems |= {"main-fisheye-estimated", "pair-fisheye-street-t265", "pair-fisheye-room-t265"}
     assert {path.stem for path in (reported / "tables").iterdir()} == stems
 

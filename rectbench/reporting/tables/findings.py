@@ -9,14 +9,13 @@ from dataclasses import dataclass
 from itertools import combinations, pairwise
 from statistics import median
 
+from rectbench.metrics.view import PERSPECTIVE, PROJECTION
 from rectbench.plugins.metric import Column
 from rectbench.plugins.result import Part
 from rectbench.reporting.curves import RigCurves, rig_curves
 from rectbench.reporting.tables.captions import counted, listed
 from rectbench.reporting.tables.numbers import shown
 
-PROJECTION, PERSPECTIVE = "projection", "perspective"
-"""The note of a cell whose rectified images are perspective ones."""
 _MOST_NAMES = 4
 """Longer lists of rigs are counted."""
 _NONE = 1e-9
@@ -121,13 +120,14 @@ def _limit_text(limits: Mapping[str, _Limit], always: Sequence[str], never: Sequ
     told = []
     if limits:
         views = [limit.view_deg for limit in limits.values()]
-        up_to = f"{min(views):.0f}°"
-        if f"{max(views):.0f}°" != up_to:
-            up_to += f" to {max(views):.0f}° (median {median(views):.0f}°, {counted(len(views), 'rig')})"
+        up_to = f"{min(views):.0f}° across"
+        if f"{max(views):.0f}° across" != up_to:
+            among = f"median {median(views):.0f}°, {counted(len(views), 'rig')}"
+            up_to = f"{min(views):.0f}° to {max(views):.0f}° across ({among})"
         winners = [method for method, _ in Counter(limit.beyond for limit in limits.values()).most_common()]
         told.append(
             f"In views of up to {up_to} a perspective image has less log distortion than any other method; "
-            f"in wider ones {listed(winners)} {'has' if len(winners) == 1 else 'have'} less."
+            f"in wider ones {' or '.join(winners)} has less."
         )
     for rigs, how in ((always, "in the whole view"), (never, "in no view")):
         if rigs:

@@ -77,10 +77,7 @@ def _topic_tables(part: Run, topic: str) -> Iterator[Table]:
         yield from [pose_table(part)] if columns else []
     elif topic == "Time":
         yield from [timing_table(part)] if "timing" in wanted_figures(part) and columns else []
-    elif any(column.shown == "topic" for column in columns) and (
-        # In a run without parts the main table speaks of it, if of few of its columns.
-        part.group or not part.has_truth or all(column.shown == "topic" for column in columns)
-    ):
+    elif any(column.shown == "topic" for column in columns):
         yield from pairwise_tables(part, topic)
 
 
