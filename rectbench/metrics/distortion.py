@@ -183,7 +183,7 @@ class DistortionMetric(Metric):
         for protocol, shown, how, meaning in (
             (
                 "native",
-                "summary",
+                "page",
                 "as its authors scale it",
                 "The paper's mean L per source pixel that is shown, at the scale each method's authors "
                 "choose. An image shrunk to nothing has L = 1.",

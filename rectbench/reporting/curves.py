@@ -43,6 +43,16 @@ class RigCurves:
         return self.views_deg[below] + part * (self.views_deg[above] - self.views_deg[below])
 
 
+def ranking_stem(catalogue: Catalogue) -> str:
+    """What the columns of the ranking measure begin with.
+
+    >>> from rectbench.plugins.catalogue import known
+    >>> ranking_stem(known())
+    'log_distortion'
+    """
+    return re.sub(r"_\d+$", "", catalogue.ranking.key)
+
+
 def shares(catalogue: Catalogue) -> dict[int, str]:
     """The columns of the ranking measure on a share of the view, by that share (%), ascending.
 
@@ -50,7 +60,7 @@ def shares(catalogue: Catalogue) -> dict[int, str]:
     >>> shares(known())[95]
     'log_distortion_95'
     """
-    stem = re.sub(r"_\d+$", "", catalogue.ranking.key)
+    stem = ranking_stem(catalogue)
     found = {
         int(match[1]): column.key
         for column in catalogue.columns

@@ -94,8 +94,8 @@ def test_a_perspective_image_ends_where_it_keeps_no_more(write_run: WriteRun) ->
 def test_rigs_without_a_crossing_are_told_apart(write_run: WriteRun) -> None:
     rows = [*crossing_at(150.0, "narrow"), *crossing_at(5.0, "wide")]
     assert limit(write_run, rows) == (
-        "On narrow a perspective image has the least in the whole view. On wide a perspective image has the "
-        "least in no view."
+        "On narrow a perspective image has the least log distortion in the whole view. On wide a perspective "
+        "image has the least log distortion in no view."
     )
 
 

@@ -14,7 +14,7 @@ from rectbench.plugins.catalogue import known
 from rectbench.reporting.tables.main_tables import main_tables
 from rectbench.reporting.tables.pair_tables import pair_tables
 from rectbench.reporting.tables.part_tables import all_tables
-from rectbench.reporting.tables.rig_tables import distortion_table
+from rectbench.reporting.tables.rig_tables import distortion_tables
 from rectbench.reporting.tables.table import Table, escape_latex, to_csv, to_latex, to_markdown
 from rectbench.runs.run import read_run
 from tests.reporting.runs import RIGS, SCENES, failed_row, make_row, quick_rows
@@ -122,11 +122,13 @@ def test_pair_tables_hold_every_metric_of_every_pair(write_run: WriteRun) -> Non
     assert found["note:focal_px"] == "412.25"
 
 
-def test_distortion_table_has_a_section_a_rig_and_every_protocol(write_run: WriteRun) -> None:
-    table = distortion_table(read_run(write_run(quick_rows())))
-    assert [section.title for section in table.sections] == ["all rigs", *RIGS]
-    keys = [heading.key for heading in table.headings]
-    assert {"distortion_native", "distortion_rescaled", "distortion_stretched"} <= set(keys)
+def test_distortion_tables_have_a_section_a_rig_every_share_and_every_protocol(write_run: WriteRun) -> None:
+    tables = list(distortion_tables(read_run(write_run(quick_rows()))))
+    for table in tables:
+        assert [section.title for section in table.sections] == ["all rigs", *RIGS]
+    by_view, by_protocol = ({heading.key for heading in table.headings} for table in tables)
+    assert {f"log_distortion_{share}" for share in (50, 75, 95, 100)} <= by_view
+    assert {"distortion_native", "distortion_rescaled", "distortion_stretched"} <= by_protocol
 
 
 def test_variants_of_one_method_are_told_apart_by_their_options(write_run: WriteRun) -> None:

@@ -131,7 +131,7 @@ def _limit_text(limits: Mapping[str, _Limit], always: Sequence[str], never: Sequ
         )
     for rigs, how in ((always, "in the whole view"), (never, "in no view")):
         if rigs:
-            told.append(f"On {_some(rigs)} a perspective image has the least {how}.")
+            told.append(f"On {_some(rigs)} a perspective image has the least log distortion {how}.")
     return " ".join(told)
 
 

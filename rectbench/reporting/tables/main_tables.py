@@ -25,6 +25,9 @@ from rectbench.reporting.tables.tabulation import (
 )
 from rectbench.runs.run import Run
 
+INTERVAL = "_interval"
+"""Ends the name of the column that holds another one's intervals."""
+
 
 def main_tables(run: Run) -> list[Table]:
     """Methods by key metrics, averaged over every rig; one table a part and pose."""
@@ -89,5 +92,5 @@ def _interval_field(summaries: Sequence[Summary], column: Column) -> tuple[Headi
     if not any(texts):
         return None
     meaning = f"Of {column.heading}, over rigs: where the mean over many more rigs of these kinds would lie."
-    head = Heading("95 % interval", f"{column.key}_interval", meaning=meaning)
+    head = Heading("95 % interval", f"{column.key}{INTERVAL}", meaning=meaning)
     return head, [Entry(text or MISSING, text or None) for text in texts]

@@ -17,7 +17,7 @@ from rectbench.reporting.tables.captions import averages_text, capitalised
 from rectbench.reporting.tables.main_tables import is_ranked, main_tables
 from rectbench.reporting.tables.numbers import MISSING, three_digits
 from rectbench.reporting.tables.pair_tables import pair_tables
-from rectbench.reporting.tables.rig_tables import distortion_table, rig_table
+from rectbench.reporting.tables.rig_tables import distortion_tables, rig_table
 from rectbench.reporting.tables.run_tables import claims_tables, failures_table, photograph_tables
 from rectbench.reporting.tables.table import (
     Entry,
@@ -72,7 +72,7 @@ def _methods_tables(part: Run) -> Iterator[Table]:
 def _topic_tables(part: Run, topic: str) -> Iterator[Table]:
     columns = topic_columns(part, topic)
     if topic == "Distortion":
-        yield from [distortion_table(part)] if is_ranked(part) else []
+        yield from distortion_tables(part) if is_ranked(part) else []
     elif topic == "Poses":
         yield from [pose_table(part)] if columns else []
     elif topic == "Time":

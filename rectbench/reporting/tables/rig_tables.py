@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from rectbench.plugins.metric import Column
 from rectbench.plugins.result import Result
-from rectbench.reporting.curves import KEPT, ranked_by, ranked_share, view_key
-from rectbench.reporting.names import named
+from rectbench.reporting.curves import KEPT, ranked_by, ranked_share, ranking_stem, view_key
+from rectbench.reporting.names import named, slug
 from rectbench.reporting.tables.captions import averages_text, capitalised, units_text
 from rectbench.reporting.tables.findings import reversals
 from rectbench.reporting.tables.numbers import MISSING, shown
@@ -37,9 +37,13 @@ from rectbench.reporting.tables.tabulation import (
 from rectbench.runs.run import Run
 
 _KEPT = Column.share(KEPT, "view kept", "higher", "")
+_SHARES = (
+    "A share of the view is that of the source pixels nearest to its middle, the same for all methods; shown is "
+    "what the method itself shows."
+)
 _PROTOCOLS = (
-    "Native: each method's own scale; rescaled: the one scale best for L; stretched: the best scales of "
-    "width and height."
+    "Of what the method shows. Native: each method's own scale; rescaled: the one scale best for L; stretched: "
+    "the best scales of width and height."
 )
 
 
@@ -106,16 +110,24 @@ def _mean_row(found: Standing, ranking: Column, labels: int, views: int) -> tupl
     return words(rule), *blanks, *entries
 
 
-def distortion_table(run: Run) -> Table:
-    """Distortion under each protocol, a section a rig, averaged over that rig's pairs."""
+def distortion_tables(run: Run) -> Iterator[Table]:
+    """The ranking measure on shares of the view, then distortion under each protocol; a section a rig."""
+    columns, stem = topic_columns(run, "Distortion"), ranking_stem(run.catalogue)
+    of_view = [column for column in columns if column.key.startswith(stem)]
+    others = [column for column in columns if column not in of_view]
+    if of_view:
+        yield _by_rig(run, of_view, slug(stem), f"{capitalised(stem.replace('_', ' '))} by view", _SHARES)
+    if others:
+        yield _by_rig(run, others, "distortion", "Distortion by protocol", _PROTOCOLS)
+
+
+def _by_rig(run: Run, columns: Sequence[Column], stem: str, title: str, about: str) -> Table:
     results = run.select(pose=run.geometric_pose)
-    columns = topic_columns(run, "Distortion")
     by_rig = {rig: run.select(results, rig=rig) for rig in run.rigs}
-    table = methods_table(run, columns, {ALL_RIGS: results, **by_rig} if len(by_rig) > 1 else by_rig)
     return replace(
-        table,
+        methods_table(run, columns, {ALL_RIGS: results, **by_rig} if len(by_rig) > 1 else by_rig),
         kind="distortion",
-        name=named(run, "distortion"),
-        title=titled(run, "Distortion by protocol"),
-        caption=f"{run.geometric_pose.capitalize()} pose. {averages_text(results, columns)} {_PROTOCOLS}",
+        name=named(run, stem),
+        title=titled(run, title),
+        caption=f"{run.geometric_pose.capitalize()} pose. {averages_text(results, columns)} {about}",
     )
