@@ -59,7 +59,7 @@ def check_agreement(rect: Rectification, delivered: Delivered) -> None:
 
 
 def _at_least_as_fine(rect: Rectification, delivered: Delivered) -> Rectification:
-    """The same images at the source's resolution where they are coarser: small tables smooth what they hold."""
+    """The images at the source's resolution where they are coarser: small tables smooth what they hold."""
     determinants = np.abs(_determinants(delivered.shown.both))
     shrunk = float(np.median(determinants)) if len(determinants) else 1.0
     most = LARGEST_TABLE * math.prod(rect.left.source.size) / math.prod(rect.size)

@@ -191,7 +191,7 @@ def test_who_crops_is_not_ranked() -> None:
     assert scored(cropped()) == math.inf
 
 
-@pytest.mark.parametrize("width", [64, 160, 640])
+@pytest.mark.parametrize("width", [64, 640])
 @pytest.mark.parametrize("name", ["t265", "canon-8mm", "bumblebee2", "tumvi", "ocam"])
 @pytest.mark.parametrize("method", ["conventional", "abraham", "hartley", "fusiello", "local-homography"])
 def test_honest_methods_agree_with_themselves(method: str, name: str, width: int) -> None:
