@@ -22,6 +22,8 @@ EQUIVALENT = 0.02
 """Methods whose values differ by less than this share are the same in practice."""
 SAMPLES = 5000
 """Of the posterior: a probability is then known to 0.007."""
+BEYOND = 1e6
+"""Stands for the logarithm of infinity, where only order counts."""
 
 
 @dataclass(frozen=True)
@@ -52,11 +54,12 @@ def signed_rank(
     unit: str = "unit",
     seed: int = 0,
 ) -> tuple[Belief, ...]:
-    """What is to be believed of each pair of methods, over the units on which both have a finite value.
+    """What is to be believed of each pair of methods, over the units on which both have a value.
 
     Parameters
     ----------
-    values : by method and unit, lower being better, as in `rank`.
+    values : by method and unit, lower being better; infinite is worse than any number, and on a unit where
+        both are nothing is to be told.
     equivalent : the region of practical equivalence: values that differ by less than this share.
     floor : smaller values count as this.
     unit : what a unit is called in a reason.
@@ -71,8 +74,8 @@ def signed_rank(
 def _logs(a: Mapping[Unit, float], b: Mapping[Unit, float], floor: float) -> Iterator[tuple[float, float]]:
     for unit, value in a.items():
         other = b.get(unit, math.nan)
-        if math.isfinite(value) and math.isfinite(other):
-            yield math.log(max(value, floor)), math.log(max(other, floor))
+        if not (math.isnan(value) or math.isnan(other) or value == other == math.inf):
+            yield min(math.log(max(value, floor)), BEYOND), min(math.log(max(other, floor)), BEYOND)
 
 
 def _belief(a: str, b: str, logs: list[tuple[float, float]], region: float, unit: str, seed: int) -> Belief:

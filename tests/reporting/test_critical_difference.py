@@ -18,7 +18,7 @@ from rectbench.reporting.charts.critical_difference import (
 )
 from rectbench.reporting.style import looks
 from rectbench.runs.run import read_run
-from tests.reporting.runs import METHODS, make_row
+from tests.reporting.runs import METHODS, failed_row, make_row
 
 WriteRun = Callable[..., Path]
 RIGS = tuple(f"rig-{i}" for i in range(14))
@@ -53,12 +53,23 @@ def test_it_is_drawn_from_ten_rigs_and_three_methods_on(
         assert drawing.draw().axes
 
 
-def test_a_method_without_a_number_on_some_rig_is_not_among_them(write_run: WriteRun) -> None:
-    given = [r for r in rows(RIGS) if not (r["method"] == "hartley" and r["rig"] == RIGS[3])]
-    data = decided(read_run(write_run(given)))
-    assert data.rigs == 14
-    assert set(data.values) == set(METHODS) - {"hartley"}
-    assert next(iter(data.values)) == "local-homography"
+def test_a_method_without_a_number_on_some_rig_shares_the_last_place_there(
+    write_run: WriteRun, sources: Sources
+) -> None:
+    absent = {("local-homography", RIGS[3]), ("abraham", RIGS[3])}
+    folder = write_run([r for r in rows(RIGS) if (r["method"], r["rig"]) not in absent])
+    data = decided(read_run(folder))
+    assert (len(data.values), data.rigs) == (5, 14)
+    one = Decided("x", 1e-9, {m: dict.fromkeys(RIGS, own[RIGS[3]]) for m, own in data.values.items()})
+    assert [mean_ranks(one)[0][method] for method in ("local-homography", "abraham")] == [4.5, 4.5]
+    words = "(local-homography, abraham)"
+    assert all(words in drawing.caption for drawing in drawings(folder, sources))
+
+
+def test_a_method_without_any_number_is_not_drawn(write_run: WriteRun) -> None:
+    given = [r for r in rows(RIGS, ("abraham", "conventional")) if r["method"] != "hartley"]
+    given += [failed_row("street", rig, "exact", "hartley") for rig in RIGS]
+    assert set(decided(read_run(write_run(given))).values) == {"abraham", "conventional"}
 
 
 def test_the_critical_difference_is_demsars() -> None:

@@ -54,11 +54,18 @@ def test_below_six_units_it_says_why_it_says_nothing() -> None:
     assert math.isnan(found.a_better)
 
 
-def test_a_pair_is_compared_where_both_have_a_finite_value() -> None:
+def test_a_pair_is_compared_where_both_have_a_value() -> None:
     given = values(1.5)
     given["b"] |= {0: math.inf, 1: math.nan}
+    given["a"] |= {0: math.inf}
     del given["a"][2]
     assert belief(given).units == 9
+
+
+def test_infinite_is_worse_than_any_number() -> None:
+    given = values(0.5)
+    given["b"] |= dict.fromkeys(range(9), math.inf)
+    assert belief(given).a_better > 0.9
 
 
 def test_all_pairs_of_methods_are_told() -> None:

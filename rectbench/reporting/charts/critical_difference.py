@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rectbench.plugins.figure import Drawing, Figure, FigureData, Look
-from rectbench.plugins.result import Part
+from rectbench.plugins.result import Part, distinct
 from rectbench.reporting.style import FAINT, INK, LOST, PAGE_INCHES, PAPER
 from rectbench.runs.units import by_rig, floor_of
-from rectbench.statistics.bayes import EQUIVALENT, Belief, signed_rank
+from rectbench.statistics.bayes import BEYOND, EQUIVALENT, Belief, signed_rank
 from rectbench.statistics.paired import NOISE
 from rectbench.statistics.ranking import rank
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 LEAST_RIGS = 10
 """With fewer, ranks say too little to be drawn."""
-LEAST_RANKED = 3
+LEAST_METHODS = 3
 """Of two methods a signed-rank test tells all that their ranks do."""
 MOST_PAIRS = 28
 """Of more pairs of methods only neighbours in the ranking are shown."""
@@ -38,7 +38,7 @@ LEAST_LABELLED = 0.06
 
 @dataclass(frozen=True)
 class Decided:
-    """The values of the ranked methods on each rig, best method first, and what they are."""
+    """The values of methods on each rig, best method first; infinite where one has none."""
 
     heading: str
     floor: float
@@ -46,7 +46,7 @@ class Decided:
 
     @property
     def rigs(self) -> int:
-        """How many rigs all of these methods have a value on."""
+        """How many rigs any of the methods has a value on."""
         return len(next(iter(self.values.values())))
 
 
@@ -60,14 +60,15 @@ class CriticalDifference(Figure):
     def drawings(self, given: FigureData) -> Iterator[Drawing]:
         """Both, of a part with ten rigs or more; else none."""
         data = decided(given.part)
-        if len(data.values) < LEAST_RANKED or data.rigs < LEAST_RIGS:
+        if len(data.values) < LEAST_METHODS or data.rigs < LEAST_RIGS:
             return
         yield Drawing(
             "critical-difference",
             "Critical difference",
             f"Mean rank of each method by {data.heading} over {data.rigs} rigs, 1 being the best. Methods "
             "that a bar joins are not told apart at 5 % (Friedman's test, then Nemenyi's; Demšar 2006): "
-            "their mean ranks are nearer to each other than the critical difference CD.",
+            "their mean ranks are nearer to each other than the critical difference CD."
+            f"{_lacking(data, 'shares the last place')}",
             data,
             lambda: draw_ranks(data, given.looks),
         )
@@ -76,19 +77,27 @@ class CriticalDifference(Figure):
             "Practical equivalence",
             f"How probable it is on such rigs that one method has the lower {data.heading}, or the other, or "
             f"that they are less than {100 * EQUIVALENT:g} % apart (grey), the same in practice: Bayesian "
-            f"signed-rank test over {data.rigs} rigs (Benavoli et al. 2017).",
+            f"signed-rank test over {data.rigs} rigs (Benavoli et al. 2017)."
+            f"{_lacking(data, 'is the worse one')}",
             data,
             lambda: draw_beliefs(data, given.looks),
         )
 
 
 def decided(part: Part) -> Decided:
-    """The ranking column of the methods that have it on every rig, under the pose that shows distortion."""
+    """The ranking column of all methods that have it anywhere, under the pose that shows distortion."""
     column = part.catalogue.ranking
-    values = by_rig(part.select(pose=part.geometric_pose), column)
-    ranking = rank(values, floor=floor_of(column), unit="rig")
-    ranked = [method for method in ranking.order if method in ranking.ranks]
-    return Decided(column.heading, floor_of(column), {method: values[method] for method in ranked})
+    values = {m: own for m, own in by_rig(part.select(pose=part.geometric_pose), column).items() if own}
+    rigs = distinct(rig for own in values.values() for rig in own)
+    order = rank(values, floor=floor_of(column)).order
+    filled = {method: {rig: values[method].get(rig, math.inf) for rig in rigs} for method in order}
+    return Decided(column.heading, floor_of(column), filled)
+
+
+def _lacking(data: Decided, then: str) -> str:
+    """The sentence about methods that have no number on some rig; empty where there are none."""
+    lacking = [method for method, own in data.values.items() if math.inf in own.values()]
+    return f" A method without a number on a rig ({', '.join(lacking)}) {then} there." if lacking else ""
 
 
 def mean_ranks(data: Decided) -> tuple[dict[str, float], pd.DataFrame, float]:
@@ -101,7 +110,8 @@ def mean_ranks(data: Decided) -> tuple[dict[str, float], pd.DataFrame, float]:
     from scipy.stats import friedmanchisquare, studentized_range
 
     logs = np.log(np.maximum([list(numbers.values()) for numbers in data.values.values()], data.floor))
-    table = pd.DataFrame(np.round(logs.T / NOISE) * NOISE, columns=list(data.values))  # rounding is a tie
+    settled = np.round(np.minimum(logs, BEYOND) / NOISE)  # rounding is a tie
+    table = pd.DataFrame(settled.T, columns=list(data.values))
     methods, rigs = len(table.columns), len(table)
     p = posthoc_nemenyi_friedman(table)
     with np.errstate(invalid="ignore"):  # all methods alike on all rigs
