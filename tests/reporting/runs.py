@@ -12,7 +12,7 @@ import numpy as np
 import pandas as pd
 
 from rectbench.cameras import Camera
-from rectbench.experiments.planning import Selection
+from rectbench.experiments.selecting import Selection
 from rectbench.experiments.spec import Report
 from rectbench.images.stereo_pair import StereoPair
 from rectbench.metrics import distortion
