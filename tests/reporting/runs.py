@@ -49,6 +49,7 @@ def make_row(scene: str, rig: str, pose: str, method: str, seed: int = 0, **chan
         "rig": rig,
         "motion": "as-calibrated",
         "pose": pose,
+        "matches": "images" if method in ("hartley", "fusiello") else "",
         "method": method,
         "options": "{}",
         "seed": seed,
