@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import re
 
+from rectbench.pairs.spec import NO_SCENE
 from rectbench.plugins.result import Part
 from rectbench.store.keys import digest
 
-NO_SCENE = "none"
-"""The scene of pairs that are a rig and a motion alone, of which nothing is rendered."""
 LONGEST_STEM = 120
 """Letters; file systems take 255 bytes, the suffix among them."""
 

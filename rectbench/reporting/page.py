@@ -7,10 +7,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from rectbench.pairs.spec import NO_SCENE
 from rectbench.plugins.result import distinct
 from rectbench.reporting.asked import methods_part, part_title
 from rectbench.reporting.figures import EXTENSIONS, Drawn
-from rectbench.reporting.names import NO_SCENE, slug
+from rectbench.reporting.names import slug
 from rectbench.reporting.style import looks
 from rectbench.reporting.tables.findings import perspective_limit
 from rectbench.reporting.tables.table import SPELLINGS, Entry, Table

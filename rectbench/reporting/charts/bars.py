@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from itertools import product
 
+from rectbench.pairs.spec import NO_SCENE
 from rectbench.plugins.figure import Drawing, Figure, FigureData
 from rectbench.plugins.result import Part, Result
 from rectbench.reporting.charts.grouped_bars import Bar, BarChart, bar_drawing, bar_of
-from rectbench.reporting.names import NO_SCENE, pair_labels
+from rectbench.reporting.names import pair_labels
 
 _BOUNDED = ("distortion_rescaled", "distortion_stretched")
 """Never far above 1, as every image may be shrunk: a logarithmic axis would hide a third more or less."""

@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Sequence
 
+from rectbench.pairs.spec import NO_SCENE
 from rectbench.plugins.metric import Average, Column
 from rectbench.plugins.result import Result, distinct
-from rectbench.reporting.names import NO_SCENE
 
 _RULES: dict[Average, str] = {
     "geometric": "geometric of",

@@ -7,9 +7,10 @@ from collections.abc import Sequence
 from itertools import product
 from typing import Any
 
+from rectbench.pairs.spec import NO_SCENE
 from rectbench.plugins.metric import Column
 from rectbench.plugins.result import Result
-from rectbench.reporting.names import NO_SCENE, named
+from rectbench.reporting.names import named
 from rectbench.reporting.tables.numbers import MISSING, three_digits
 from rectbench.reporting.tables.table import Entry, Heading, Section, Table, number, text_heading, with_best
 from rectbench.reporting.tables.tabulation import head_text

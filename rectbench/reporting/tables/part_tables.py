@@ -8,11 +8,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from rectbench.pairs.spec import NO_SCENE
 from rectbench.plugins.metric import Column
 from rectbench.plugins.result import Result
 from rectbench.reporting.asked import methods_part, wanted_figures
 from rectbench.reporting.charts.starts import SAME_MINIMUM, Starts, start_study, study_method
-from rectbench.reporting.names import NO_SCENE, named, one_line, pair_labels, slug
+from rectbench.reporting.names import named, one_line, pair_labels, slug
 from rectbench.reporting.tables.captions import averages_text, capitalised
 from rectbench.reporting.tables.main_tables import is_ranked, main_tables
 from rectbench.reporting.tables.numbers import MISSING, three_digits

@@ -38,12 +38,12 @@ from rectbench.runs.run import Run
 
 _KEPT = Column.share(KEPT, "view kept", "higher", "")
 _SHARES = (
-    "A share of the view is that of the source pixels nearest to its middle, the same for all methods; shown is "
-    "what the method itself shows."
+    "A share of the view is that of the source pixels nearest to its middle, the same for all methods; shown "
+    "is all that the method itself shows."
 )
 _PROTOCOLS = (
-    "Of what the method shows. Native: each method's own scale; rescaled: the one scale best for L; stretched: "
-    "the best scales of width and height."
+    "Of all that the method shows. Native: each method's own scale; rescaled: the one scale best for L; "
+    "stretched: the best scales of width and height."
 )
 
 
