@@ -25,6 +25,7 @@ LAST = ("Reconstruction", "Time", "Every pair", "Photographs")
 _TABLES = {
     "main": "Ranking",
     "rigs": "Ranking",
+    "beliefs": "Ranking",
     "pose": "Poses",
     "rows": "Row error",
     "distortion": "Distortion",

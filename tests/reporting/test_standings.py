@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from rectbench.reporting.tables.belief_table import belief_table
 from rectbench.reporting.tables.main_tables import main_tables
 from rectbench.reporting.tables.rig_tables import rig_table
 from rectbench.reporting.tables.table import Table
@@ -159,3 +160,24 @@ def test_the_rigs_have_a_row_each_and_their_geometric_mean_the_last(write_run: W
     assert table.rows[-1][-2].value == pytest.approx(0.3)
     assert table.rows[-1][-2].text == "0.300 (0.289–0.311)"
     assert table.rows[-1][-1].text == "–"
+
+
+def test_from_ten_rigs_on_a_table_says_how_probably_methods_differ_in_practice(write_run: WriteRun) -> None:
+    rigs = [f"rig-{i}" for i in range(10)]
+    values = {
+        "hartley": dict.fromkeys(rigs, 0.9),
+        "abraham": dict.fromkeys(rigs, 0.3),
+        "local-homography": dict.fromkeys(rigs, 0.301),
+    }
+    table = belief_table(read_run(write_run(rows_of(values))))
+    assert table is not None
+    assert "less" in table.caption
+    assert "2 %" in table.caption
+    by_pair = {(row[0].text, row[1].text): [entry.best for entry in row[2:]] for row in table.rows}
+    assert by_pair == {
+        ("abraham", "local-homography"): [False, True, False],
+        ("abraham", "hartley"): [True, False, False],
+        ("local-homography", "hartley"): [True, False, False],
+    }
+    nine = {method: dict(list(by_rig.items())[:9]) for method, by_rig in values.items()}
+    assert belief_table(read_run(write_run(rows_of(nine)))) is None

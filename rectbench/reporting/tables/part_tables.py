@@ -14,6 +14,7 @@ from rectbench.plugins.result import Result
 from rectbench.reporting.asked import methods_part, wanted_figures
 from rectbench.reporting.charts.starts import SAME_MINIMUM, Starts, start_study, study_method
 from rectbench.reporting.names import named, one_line, pair_labels, slug
+from rectbench.reporting.tables.belief_table import belief_table
 from rectbench.reporting.tables.captions import averages_text, capitalised
 from rectbench.reporting.tables.main_tables import is_ranked, main_tables
 from rectbench.reporting.tables.numbers import MISSING, three_digits
@@ -64,7 +65,7 @@ def all_tables(run: Run) -> Iterator[Table]:
 def _methods_tables(part: Run) -> Iterator[Table]:
     if is_ranked(part):
         yield from main_tables(part)
-        yield from filter(None, [rig_table(part)])
+        yield from filter(None, [rig_table(part), belief_table(part)])
     for topic in part.catalogue.topics:
         yield from _topic_tables(part, topic)
     yield from pair_tables(part)
