@@ -15,7 +15,7 @@ from rectbench.reporting.names import slug
 from rectbench.reporting.style import looks
 from rectbench.reporting.tables.findings import perspective_limit
 from rectbench.reporting.tables.table import SPELLINGS, Entry, Table
-from rectbench.reporting.tables.tabulation import ALL_RIGS
+from rectbench.reporting.tables.tabulation import ALL_MOTIONS, ALL_RIGS
 from rectbench.runs.record import RunRecord
 from rectbench.runs.run import Run
 
@@ -39,7 +39,7 @@ _TABLES = {
 }
 """Under which heading each kind of table stands."""
 _MOST_ROWS = 30
-"""Of a longer table the page shows the averages over all rigs, and folds the rest."""
+"""Of a longer table the page shows the averages over all rigs or motions, and folds the rest."""
 _FACTS = {
     "command": "Command",
     "data": "Photographs of",
@@ -89,7 +89,11 @@ def render_page(run: Run, tables: Sequence[Table], drawn: Sequence[Drawn]) -> st
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.globals |= {"sort_value": _sort_value, "all_rigs": ALL_RIGS, "most_rows": _MOST_ROWS}
+    environment.globals |= {
+        "sort_value": _sort_value,
+        "summaries": (ALL_RIGS, ALL_MOTIONS),
+        "most_rows": _MOST_ROWS,
+    }
     shown = {part.group: methods_part(part) for part in run.parts}
     methods = distinct(m for part in shown.values() if part for m in part.methods)
     widest = max(filter(None, shown.values()), key=lambda part: len(part.rigs), default=None)

@@ -16,6 +16,7 @@ from rectbench.reporting.names import pair_labels
 from rectbench.reporting.report import write_report
 from rectbench.reporting.style import looks
 from rectbench.reporting.tables.part_tables import all_tables
+from rectbench.reporting.tables.rig_tables import rig_table
 from rectbench.runs.run import read_run
 from tests.reporting.runs import METHODS, fake_sources, make_row, save_run
 from tests.reporting.test_report import Page
@@ -102,3 +103,14 @@ def test_captions_count_rigs_and_never_pairs_alone(write_run: WriteRun) -> None:
     assert "8 rigs (2 motions each)" in captions
     assert "2 rigs (2 scenes each)" in captions
     assert not re.search(r"over \d+ pairs", captions)
+
+
+def test_a_rig_has_a_row_over_all_motions_and_one_under_each(reported: Path) -> None:
+    table = rig_table(read_run(reported).part("lenses"))
+    assert table is not None
+    assert [section.title for section in table.sections] == ["all motions", "sideways", "rolled"]
+    assert [row[0].text for row in table.sections[0].rows] == [*RIGS, "geometric mean"]
+    values = [next(r[2].value for r in s.rows if r[0].text == "lens-3") for s in table.sections]
+    assert isinstance(values[1], float)
+    assert isinstance(values[2], float)
+    assert values[0] == pytest.approx((values[1] * values[2]) ** 0.5)

@@ -29,9 +29,9 @@ def belief_table(run: Run) -> Table | None:
         name=named(run, "beliefs"),
         title=titled(run, "How probably methods differ in practice"),
         caption=f"How probable it is on rigs of this kind that the one method or the other has less "
-        f"{ranked_by(run.catalogue)} by {region} or more, or that they differ by less, which is no difference "
-        f"in practice: Bayesian signed-rank test over {counted(data.rigs, 'rig')}. A method is the worse one "
-        "on a rig where it has no number.",
+        f"{ranked_by(run.catalogue)} by {region} or more, or that they differ by less, which is no "
+        f"difference in practice: Bayesian signed-rank test over {counted(data.rigs, 'rig')}. A method is "
+        "the worse one on a rig where it has no number.",
         headings=(
             text_heading("method"),
             text_heading("other"),

@@ -25,6 +25,7 @@ from rectbench.reporting.tables.table import (
     words,
 )
 from rectbench.reporting.tables.tabulation import (
+    ALL_MOTIONS,
     ALL_RIGS,
     heading,
     interval_text,
@@ -48,44 +49,50 @@ _PROTOCOLS = (
 
 
 def rig_table(run: Run) -> Table | None:
-    """The ranking column, a row a rig (and motion), a column a method; None where that is a single row."""
+    """The ranking column, a row a rig, a column a method; then the same for each motion. None for one rig."""
     results, ranking = run.select(pose=run.geometric_pose), run.catalogue.ranking
-    places = list(dict.fromkeys((r.rig, r.motion) for r in results))
-    if len(places) < 2 or ranking.key not in run.metrics:
+    if len(run.rigs) < 2 or ranking.key not in run.metrics:
         return None
     found = standing(summaries_of(run, results, [ranking]), results, run.catalogue)
     methods = [s.method for s in found.summaries]
     views = measured(run, [run.catalogue.column(view_key(ranked_share(run.catalogue)))])
-    rows = tuple(_rig_row(run, place, methods, views) for place in places)
-    has_gaps = any(entry.value is None and entry.text != MISSING for row in rows for entry in row)
+    rows = (*_rig_rows(run, results, methods, views), _mean_row(found, ranking, len(views)))
+    sections = [Section(ALL_MOTIONS if len(run.motions) > 1 else "", rows)]
+    if len(run.motions) > 1:
+        by_motion = {motion: run.select(results, motion=motion) for motion in run.motions}
+        sections += [Section(m, _rig_rows(run, own, methods, views)) for m, own in by_motion.items()]
+    has_gaps = any(
+        entry.text.startswith("(") for section in sections for row in section.rows for entry in row
+    )
     gaps = "In brackets: the share of the view that a method keeps, where it has no number."
-    words_of = ("rig", "motion") if len(run.motions) > 1 else ("rig",)
     return Table(
         kind="rigs",
         part=run.group,
         name=named(run, "rigs"),
         title=titled(run, f"{capitalised(ranked_by(run.catalogue))}, rig by rig"),
-        caption=f"{run.geometric_pose.capitalize()} pose, pairs of a rig averaged. The last row is the "
-        f"average over {units_text(results)}, with its 95 % interval where they are three or more.",
-        headings=(*map(text_heading, words_of), *map(heading, views), *(Heading(m, m) for m in methods)),
-        sections=(Section("", rows), Section("", (_mean_row(found, ranking, len(words_of), len(views)),))),
+        caption=f"{run.geometric_pose.capitalize()} pose, pairs of a rig averaged. The last row over all is "
+        f"the average over {units_text(results)}, with its 95 % interval where they are three or more.",
+        headings=(text_heading("rig"), *map(heading, views), *(Heading(m, m) for m in methods)),
+        sections=tuple(sections),
         notes=(*reversals(found.values, ranking), *[gaps] * has_gaps),
     )
 
 
+def _rig_rows(
+    run: Run, results: Sequence[Result], methods: Sequence[str], views: Sequence[Column]
+) -> tuple[tuple[Entry, ...], ...]:
+    by_rig = {rig: run.select(results, rig=rig) for rig in run.rigs}
+    return tuple(_rig_row(run, rig, own, methods, views) for rig, own in by_rig.items() if own)
+
+
 def _rig_row(
-    run: Run, place: tuple[str, str], methods: Sequence[str], views: Sequence[Column]
+    run: Run, rig: str, results: Sequence[Result], methods: Sequence[str], views: Sequence[Column]
 ) -> tuple[Entry, ...]:
     ranking = run.catalogue.ranking
-    here = run.select(pose=run.geometric_pose, rig=place[0], motion=place[1])
-    entries = [_value_or_kept(run.select(here, method=m), ranking) for m in methods]
+    entries = [_value_or_kept(run.select(results, method=m), ranking) for m in methods]
     whole = [entry.value is not None for entry in entries]
-    named_by = place if len(run.motions) > 1 else place[:1]
-    return (
-        *map(words, named_by),
-        *(number(averaged(view, here).value, view) for view in views),
-        *with_best(entries, ranking, whole),
-    )
+    fields_of_view = (number(averaged(view, results).value, view) for view in views)
+    return words(rig), *fields_of_view, *with_best(entries, ranking, whole)
 
 
 def _value_or_kept(results: Sequence[Result], ranking: Column) -> Entry:
@@ -96,7 +103,7 @@ def _value_or_kept(results: Sequence[Result], ranking: Column) -> Entry:
     return Entry(MISSING if kept.value is None else f"({shown(kept.value, _KEPT)}\u00a0%)")
 
 
-def _mean_row(found: Standing, ranking: Column, labels: int, views: int) -> tuple[Entry, ...]:
+def _mean_row(found: Standing, ranking: Column, views: int) -> tuple[Entry, ...]:
     entries = []
     for summary in found.summaries:
         mean = summary.averages[ranking.key]
@@ -106,8 +113,7 @@ def _mean_row(found: Standing, ranking: Column, labels: int, views: int) -> tupl
         else:
             entries.append(number(mean.value, ranking, f" ({within})" if within else ""))
     rule = {"geometric": "geometric mean"}.get(ranking.average, "mean")
-    blanks = [words("")] * (labels - 1) + [Entry("")] * views
-    return words(rule), *blanks, *entries
+    return words(rule), *[Entry("")] * views, *entries
 
 
 def distortion_tables(run: Run) -> Iterator[Table]:

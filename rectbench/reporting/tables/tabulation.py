@@ -17,8 +17,8 @@ from rectbench.runs.run import Run
 METHOD_HEADINGS = text_heading("method"), Heading("ok", "ok", meaning="Cells measured of cells planned.")
 NOT_OK_HEADING = Heading("not ok", "not_ok", numeric=False, meaning="How the other cells ended.")
 
-ALL_RIGS = "all rigs"
-"""The section that a table of many begins with; the page folds those behind it."""
+ALL_RIGS, ALL_MOTIONS = "all rigs", "all motions"
+"""The sections that a table of many begins with; the page folds those behind it."""
 PARTIAL = (
     "A method with failed cells is averaged over its measured cells alone. These are other pairs than its "
     "neighbours', so that its averages win no column"
