@@ -4,13 +4,14 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from matplotlib import rc_context
 from matplotlib.figure import Figure
 
 from rectbench.plugins.figure import FigureData
 from rectbench.reporting.charts.bars import bar_chart
 from rectbench.reporting.charts.coverage_curve import DistortionCoverage
 from rectbench.reporting.charts.grouped_bars import draw_bars
-from rectbench.reporting.style import looks
+from rectbench.reporting.style import STYLE, looks
 from rectbench.runs.run import read_run
 from tests.reporting.runs import METHODS, failed_row, fake_sources, make_row, quick_rows
 
@@ -94,3 +95,16 @@ def test_more_methods_than_colours_are_still_told_apart() -> None:
     assert len({(look.colour, look.hatch) for look in many}) == 40
     assert len({(look.colour, look.marker) for look in many}) == 40
     assert len({look.colour for look in list(many)[:13]}) == 13
+
+
+def test_long_names_stay_within_the_page(write_run: WriteRun) -> None:
+    options = [f'{{"law":"{law}"}}' for law in ("equidistant", "stereographic", "equisolid", "orthographic")]
+    rows = [
+        make_row("none", rig, "exact", "abraham", options=given) for rig in ("a", "b") for given in options
+    ]
+    with rc_context(fname=STYLE):
+        figure = drawn_curves(write_run(rows))
+        figure.draw_without_rendering()
+    box = figure.legends[0].get_window_extent()
+    assert box.x0 >= 0
+    assert box.x1 <= figure.bbox.width

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
 _MOST_COLUMNS = 5
 _PANEL_INCHES = 1.42
+_MARK_INCHES, _LETTER_INCHES = 0.4, 0.055
+"""Of an entry of the legend in width."""
 _TICKS = (10, 50, 95)
 _LEAST = 1e-3
 """Less log distortion than this is as good as none, and drawn here."""
@@ -65,7 +67,9 @@ def draw_curves(data: CoverageCurves, looks: Mapping[str, Look]) -> matplotlib.f
     columns = math.ceil(len(data.panels) / math.ceil(len(data.panels) / columns))
     width = COLUMN_INCHES if len(data.panels) == 1 else PAGE_INCHES
     rows = math.ceil(len(data.panels) / columns)
-    legend_columns = 3 if width == COLUMN_INCHES else 5
+    longest = max(len(_label(data, method)) for method in data.methods)
+    fitting = max(1, int(width / (_MARK_INCHES + _LETTER_INCHES * longest)))
+    legend_columns = min(fitting, len(data.methods))
     panel = _PANEL_INCHES if columns > 2 else 2.1
     height = 0.35 + 0.15 * math.ceil(len(data.methods) / legend_columns) + panel * rows
     figure = matplotlib.figure.Figure(figsize=(width, height), layout="constrained")
@@ -78,7 +82,11 @@ def draw_curves(data: CoverageCurves, looks: Mapping[str, Look]) -> matplotlib.f
     plain_log_ticks(axes[0, 0].yaxis)
     figure.supylabel(f"←  {data.label}", size=7)
     figure.supxlabel("share of the view [%], and field of view", size=7)
-    figure.legend(handles=_handles(data, looks), loc="outside upper center", ncols=legend_columns)
+    figure.legend(
+        handles=_handles(data, looks),
+        loc="outside upper center",
+        ncols=min(legend_columns, len(data.methods)),
+    )
     return figure
 
 
