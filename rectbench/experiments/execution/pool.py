@@ -85,10 +85,10 @@ class _Slot:
 
 
 class Workers:
-    """A fixed number of worker processes; a context manager that leaves none behind."""
+    """Up to `count` processes, started when there is work; a context manager that leaves none behind."""
 
     def __init__(self, count: int, limits: worker.Limits) -> None:
-        self._count, self._limits = count, limits
+        self.count, self.limits = count, limits
         self._slots: list[_Slot] = []
 
     def __enter__(self) -> Workers:
@@ -104,8 +104,8 @@ class Workers:
         """The outcome of each job with its index, as they end."""
         waiting = list(range(len(jobs)))
         starts = [0] * len(jobs)
-        while len(self._slots) < min(self._count, len(jobs)):
-            self._slots.append(_Slot(self._limits))
+        while len(self._slots) < min(self.count, len(jobs)):
+            self._slots.append(_Slot(self.limits))
         kills = _kernel_kills()
         while waiting or any(slot.future for slot in self._slots):
             for slot in self._slots:

@@ -12,6 +12,7 @@ from rectbench.experiments.execution.outcomes import Outcome
 from rectbench.experiments.execution.pool import Job, Workers
 from rectbench.experiments.execution.worker import Limits
 from rectbench.experiments.planning import Plan
+from rectbench.experiments.spec import Report
 from rectbench.experiments.tasks import CellTask
 from rectbench.pairs.opening import open_pair
 from rectbench.pairs.pair import Pair
@@ -46,8 +47,8 @@ class Execution:
 
 def execute(
     plan: Plan,
+    workers: Workers,
     *,
-    jobs: int | None = None,
     dask: str | None = None,
     fresh: bool = False,
     progress: Progress | None = None,
@@ -56,17 +57,22 @@ def execute(
 
     Parameters
     ----------
-    jobs : worker processes; as many as there are cores by default. The outcomes do not depend on it.
+    workers : who renders and runs the cells. The outcomes do not depend on their number.
     dask : address of a dask.distributed scheduler that runs the cells in the place of local workers.
     fresh : make again what the store has of this plan.
     progress : where to tell how far it is; nowhere by default.
     """
-    count = checked_jobs(jobs)
-    threads = max(1, (os.cpu_count() or 1) // count)
-    runner = _Runner(plan, Store.default(), count, threads, progress or Progress())
+    runner = _Runner(plan, Store.default(), workers, progress or Progress())
     if fresh:
         runner.forget()
-    return Execution(plan, runner.outcomes(dask), count, threads, dask)
+    return Execution(plan, runner.outcomes(dask), workers.count, workers.limits.threads, dask)
+
+
+def workers_for(report: Report, jobs: int | None = None) -> Workers:
+    """Worker processes, one a core by default, within what a report allows; started when work is there."""
+    count = checked_jobs(jobs)
+    threads = max(1, (os.cpu_count() or 1) // count)
+    return Workers(count, Limits(threads, round(report.memory_gib * 2**30)))
 
 
 def checked_jobs(jobs: int | None) -> int:
@@ -81,10 +87,9 @@ def checked_jobs(jobs: int | None) -> int:
 class _Runner:
     """One run of a plan against a store."""
 
-    def __init__(self, plan: Plan, store: Store, jobs: int, threads: int, progress: Progress) -> None:
-        self.plan, self.store, self.jobs, self.progress = plan, store, jobs, progress
+    def __init__(self, plan: Plan, store: Store, workers: Workers, progress: Progress) -> None:
+        self.plan, self.store, self.workers, self.progress = plan, store, workers, progress
         self.pairs = {spec: open_pair(spec, store) for spec in plan.pairs}
-        self.limits = Limits(threads, round(plan.report.memory_gib * 2**30))
 
     def forget(self) -> None:
         """Drop from the store what this plan would find there."""
@@ -104,10 +109,10 @@ class _Runner:
             if dask is not None:
                 self._run_on_cluster(dask, found)
             else:
-                with Workers(self.jobs, self.limits) as workers:
-                    self._make_pairs(workers, found)
-                    self._run_cells(workers, found, alone=False)
-                with Workers(1, replace(self.limits, threads=self.jobs * self.limits.threads)) as worker:
+                self._make_pairs(found)
+                self._run_cells(self.workers, found, alone=False)
+                count, limits = self.workers.count, self.workers.limits
+                with Workers(1, replace(limits, threads=count * limits.threads)) as worker:
                     self._run_cells(worker, found, alone=True)
         except KeyboardInterrupt:
             done = sum(outcome is not None for outcome in found)
@@ -129,7 +134,7 @@ class _Runner:
                 found[missing[position]] = outcome
                 advance()
 
-    def _make_pairs(self, workers: Workers, found: list[Outcome | None]) -> None:
+    def _make_pairs(self, found: list[Outcome | None]) -> None:
         """Render the pairs the store lacks; the cells of one that cannot be made end as it did."""
         # A pair with images is made even if its rows are all known: the report's pictures show it.
         wanted = dict.fromkeys(
@@ -142,7 +147,7 @@ class _Runner:
             return
         failed = {}
         with self.progress.stage("rendering", len(missing)) as advance:
-            for position, outcome in workers.run([self._pair_job(spec) for spec in missing]):
+            for position, outcome in self.workers.run([self._pair_job(spec) for spec in missing]):
                 if not outcome.ok:
                     failed[missing[position]] = outcome
                 advance()
@@ -169,7 +174,7 @@ class _Runner:
             address,
             [(task, digest(shaping)) for task, shaping in zip(tasks, inputs, strict=True)],
             timeout_s=report.timeout_s + report.render_timeout_s,  # the first cell of a pair renders it
-            limits=self.limits,
+            limits=self.workers.limits,
         )
         with self.progress.stage("cells", len(missing)) as advance:
             for position, outcome in ended:

@@ -47,7 +47,7 @@ def silence_warnings() -> None:
 
 
 def _add_up_alike() -> None:
-    """Hold BLAS and OpenMP to one thread: several split a sum by their number, and rows would depend on it."""
+    """Hold BLAS and OpenMP to one thread: several split sums by their number, and rows would depend on it."""
     for variable in ADDING_THREADS:
         os.environ[variable] = "1"
     import threadpoolctl  # not above: the variables are to be set before anything loads a BLAS
