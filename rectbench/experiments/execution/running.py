@@ -1,9 +1,10 @@
-"""Runs a plan: what the store has is taken, pairs are rendered, then cells run; in plan order out."""
+"""Runs a plan: what the store has is taken, pairs are rendered, cells run; outcomes in plan order."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, replace
 
 from rectbench.errors import InvalidInput
@@ -16,8 +17,8 @@ from rectbench.experiments.spec import Report
 from rectbench.experiments.tasks import CellTask
 from rectbench.pairs.opening import open_pair
 from rectbench.pairs.pair import Pair
-from rectbench.pairs.spec import RenderedSpec
-from rectbench.progress import Progress
+from rectbench.pairs.spec import PairSpec, RenderedSpec
+from rectbench.progress import Advance, Progress
 from rectbench.store.keys import digest
 from rectbench.store.store import Store
 
@@ -109,59 +110,81 @@ class _Runner:
             if dask is not None:
                 self._run_on_cluster(dask, found)
             else:
-                self._make_pairs(found)
-                self._run_cells(self.workers, found, alone=False)
-                count, limits = self.workers.count, self.workers.limits
-                with Workers(1, replace(limits, threads=count * limits.threads)) as worker:
-                    self._run_cells(worker, found, alone=True)
+                self._render_and_run(found)
+                self._run_alone(found)
         except KeyboardInterrupt:
             done = sum(outcome is not None for outcome in found)
             raise Interrupted(done, len(tasks)) from None
         return [outcome for outcome in found if outcome is not None]
 
-    def _run_cells(self, workers: Workers, found: list[Outcome | None], *, alone: bool) -> None:
-        """Run those cells without an outcome that are to run alone, or those that need not."""
-        tasks = self.plan.tasks
-        missing = [i for i, outcome in enumerate(found) if outcome is None and tasks[i].alone == alone]
-        if alone and not missing:
+    def _render_and_run(self, found: list[Outcome | None]) -> None:
+        """Render the pairs the store lacks, and run the cells of each that is there; not those to run alone.
+
+        The cells of a pair that cannot be made end as it did.
+        """
+        tasks, lacking = self.plan.tasks, self._lacking_pairs(found)
+        place: dict[PairSpec, int] = {spec: position for position, spec in enumerate(lacking)}
+        missing = [i for i, outcome in enumerate(found) if outcome is None and not tasks[i].alone]
+        jobs = [self._pair_job(spec) for spec in lacking]
+        jobs += [self._cell_job(tasks[index], place.get(tasks[index].pair)) for index in missing]
+        with ExitStack() as stack:
+            rendered = stack.enter_context(self.progress.stage("rendering", len(lacking)))
+            advance = stack.enter_context(self._cells_stage("cells", found, missing))
+            for position, outcome in self.workers.run(jobs):
+                if position >= len(lacking):
+                    found[missing[position - len(lacking)]] = outcome
+                    advance()
+                    continue
+                rendered()
+                if outcome.ok:
+                    continue
+                lost = replace(outcome, reason=f"rendering the pair: {outcome.reason}")
+                for index, task in enumerate(tasks):
+                    if found[index] is None and task.pair == lacking[position]:
+                        found[index] = lost
+                        advance()
+
+    def _run_alone(self, found: list[Outcome | None]) -> None:
+        """Run the cells that are to have the machine to themselves."""
+        missing = [index for index, outcome in enumerate(found) if outcome is None]
+        if not missing:
             return
-        done = sum(outcome is not None for outcome in found)
-        stage = "cells, one at a time" if alone else "cells"
-        with self.progress.stage(stage, done + len(missing)) as advance:
-            for _ in range(done):
-                advance()
-            for position, outcome in workers.run([self._cell_job(tasks[index]) for index in missing]):
+        count, limits = self.workers.count, self.workers.limits
+        jobs = [self._cell_job(self.plan.tasks[index]) for index in missing]
+        with (
+            Workers(1, replace(limits, threads=count * limits.threads)) as worker,
+            self._cells_stage("cells, one at a time", found, missing) as advance,
+        ):
+            for position, outcome in worker.run(jobs):
                 found[missing[position]] = outcome
                 advance()
 
-    def _make_pairs(self, found: list[Outcome | None]) -> None:
-        """Render the pairs the store lacks; the cells of one that cannot be made end as it did."""
-        # A pair with images is made even if its rows are all known: the report's pictures show it.
+    @contextmanager
+    def _cells_stage(
+        self, title: str, found: Sequence[Outcome | None], missing: Sequence[int]
+    ) -> Iterator[Advance]:
+        """A stage of all cells that are known or to be run now, the known ones done."""
+        done = sum(outcome is not None for outcome in found)
+        with self.progress.stage(title, done + len(missing)) as advance:
+            for _ in range(done):
+                advance()
+            yield advance
+
+    def _lacking_pairs(self, found: Sequence[Outcome | None]) -> list[RenderedSpec]:
+        """The pairs to be rendered; one with images even if its rows are known: the report shows it."""
         wanted = dict.fromkeys(
             task.pair
             for task, outcome in zip(self.plan.tasks, found, strict=True)
             if isinstance(task.pair, RenderedSpec) and (outcome is None or task.pair.images)
         )
-        missing = [spec for spec in wanted if not self.pairs[spec].is_made]
-        if not missing:
-            return
-        failed = {}
-        with self.progress.stage("rendering", len(missing)) as advance:
-            for position, outcome in self.workers.run([self._pair_job(spec) for spec in missing]):
-                if not outcome.ok:
-                    failed[missing[position]] = outcome
-                advance()
-        for index, task in enumerate(self.plan.tasks):
-            if found[index] is None and task.pair in failed:
-                pair = failed[task.pair]
-                found[index] = replace(pair, reason=f"rendering the pair: {pair.reason}")
+        return [spec for spec in wanted if not self.pairs[spec].is_made]
 
     def _pair_job(self, spec: RenderedSpec) -> Job:
         arguments = (spec, self.store.root)
         return Job(run_pair, arguments, self.plan.report.render_timeout_s, ((spec.scene_source, spec.seed),))
 
-    def _cell_job(self, task: CellTask) -> Job:
-        return Job(run_cell, (task, self.store.root), self.plan.report.timeout_s, (task.pair,))
+    def _cell_job(self, task: CellTask, after: int | None = None) -> Job:
+        return Job(run_cell, (task, self.store.root), self.plan.report.timeout_s, (task.pair,), after)
 
     def _run_on_cluster(self, address: str, found: list[Outcome | None]) -> None:
         from rectbench.experiments.execution.cluster import run_on_cluster
