@@ -22,7 +22,7 @@ from rectbench.types import FloatArray
 LEAST_UNITS = 3
 """Fewer units carry no interval: with two it would be 9 times as wide as their distance."""
 LARGEST_LOG = math.log(sys.float_info.max)
-Path = TypeVar("Path", bound=tuple[Hashable, ...])
+Label = TypeVar("Label", bound=tuple[Hashable, ...])
 """From a unit down to what is nested in it."""
 
 
@@ -96,7 +96,7 @@ def count_interval(successes: int, trials: int, level: float = 0.95) -> Interval
     return Interval(successes / trials, float(low), float(high), trials)
 
 
-def nested_means(labelled: Mapping[Path, float]) -> dict[Hashable, float]:
+def nested_means(labelled: Mapping[Label, float]) -> dict[Hashable, float]:
     """The value of each unit: the mean over its motions of the mean over scenes of the mean over seeds.
 
     Keys are (unit, motion, scene, seed), of any depth, the same for all; values that are NaN are left

@@ -77,6 +77,9 @@ def _remarks(told: pd.DataFrame, tests: int) -> Iterator[str]:
     low, high = variance_factors(rigs)
     yield f"How rigs differ is known from {rigs} of them: it may take {low:.2g} to {high:.2g} times as many."
     for level in NESTED:
+        if level == "scene" and not told["scenes"].any():
+            yield "No scene is in these pairs: what is compared is a property of rig and motion."
+            continue
         count, share = int(told[f"{level}s"].median()), told[f"{level}s_share"].max()
         part = f"{_part(share)} of the variance between rigs"
         if pd.isna(share):
