@@ -29,7 +29,7 @@ NESTED = ("motion", "scene", "seed")
 OF_NOISY_POSES = ("Row error", "Reconstruction")
 """Topics that tell methods apart by how they carry an error of the pose."""
 COLUMNS = [
-    *("part", "pose", "a", "b", "rigs", "ratio", "resolves", "rigs_needed"),
+    *("part", "pose", "a", "b", "rigs", "ratio", "low", "high", "resolves", "rigs_needed"),
     *(f"{level}s{what}" for level in NESTED for what in ("", "_needed", "_share")),
     "reason",
 ]
@@ -44,12 +44,12 @@ class Design:
     column : whose values are compared, by their ratios on the same pair and seed.
     detect : the relative difference to be told, such as 0.02.
     table : a row for each pair of methods `a`, `b` of a part of the report under a pose: `rigs` that both
-        have values on; the geometric mean over these of the `ratio` a / b; the ratio that the design
-        `resolves` in four benches of five at Holm-corrected 5 %; `rigs_needed` for `detect` with motions,
-        scenes and seeds as they are; `scenes` (of a motion of a rig; 0 of pairs without one),
-        `scenes_needed` with all else as it is, missing where no number is enough, and their `scenes_share`
-        of the variance between rigs, NaN where none has a second one; likewise motions and seeds. `reason`
-        says why a row has no numbers.
+        have values on; the geometric mean over these of the `ratio` a / b, and the ends `low`, `high` of
+        its 95 % interval; the ratio that the design `resolves` in four benches of five at Holm-corrected
+        5 %; `rigs_needed` for `detect` with motions, scenes and seeds as they are; `scenes` (of a motion of
+        a rig; 0 of pairs without one), `scenes_needed` with all else as it is, missing where no number is
+        enough, and their `scenes_share` of the variance between rigs, NaN where none has a second one;
+        likewise motions and seeds. `reason` says why a row has no numbers.
     """
 
     column: Column
@@ -115,6 +115,8 @@ def _planned(spread: Spread, difference: float, tests: int) -> dict[str, Any]:
     needs = Needs.of(spread, difference, tests)
     row = {
         "ratio": ratio(spread.mean),
+        "low": ratio(spread.interval.low),
+        "high": ratio(spread.interval.high),
         "resolves": ratio(resolved(math.sqrt(spread.variance), spread.units, tests)),
         "rigs_needed": needs.units,
     }

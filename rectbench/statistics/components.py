@@ -7,7 +7,7 @@ from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
 from statistics import fmean, median, variance
 
-from rectbench.statistics.intervals import Label, nested_means
+from rectbench.statistics.intervals import Interval, Label, margins_of, nested_means
 
 Below = tuple[Hashable, ...]
 """Some of a path."""
@@ -46,6 +46,12 @@ class Spread:
     mean: float
     variance: float
     levels: tuple[Level, ...]
+
+    @property
+    def interval(self) -> Interval:
+        """The t interval of the mean."""
+        margin = margins_of(math.sqrt(self.variance), self.units)
+        return Interval(self.mean, self.mean - margin, self.mean + margin, self.units)
 
     @classmethod
     def of(cls, labelled: Mapping[Label, float]) -> Spread:

@@ -24,6 +24,7 @@ LEAST_UNITS = 3
 LARGEST_LOG = math.log(sys.float_info.max)
 Label = TypeVar("Label", bound=tuple[Hashable, ...])
 """From a unit down to what is nested in it."""
+T = TypeVar("T", float, FloatArray)
 
 
 @dataclass(frozen=True)
@@ -126,8 +127,12 @@ def margins(values: FloatArray, level: float = 0.95) -> FloatArray:
         invalid="ignore", over="ignore"
     ):  # infinite values have no spread, huge ones an infinite one
         spread = np.std(values, axis=-1, ddof=1)
-    margin: FloatArray = stdtrit(units - 1, (1 + level) / 2) * spread / math.sqrt(units)
-    return margin
+    return margins_of(spread, units, level)
+
+
+def margins_of(spread: T, units: int, level: float = 0.95) -> T:
+    """The same by the standard deviation of the units' values, a number or an array; two units at least."""
+    return float(stdtrit(units - 1, (1 + level) / 2)) / math.sqrt(units) * spread
 
 
 def ratio(log: float) -> float:
