@@ -78,9 +78,9 @@ class CriticalDifference(Figure):
         yield Drawing(
             "practical-equivalence",
             "Practical equivalence",
-            f"How probable it is on such rigs that one method has the lower {data.heading}, or the other, or "
-            f"that they are less than {100 * EQUIVALENT:g} % apart (grey), the same in practice: Bayesian "
-            f"signed-rank test over {data.rigs} rigs (Benavoli et al. 2017)."
+            f"How probable it is that on rigs like these one method mostly has the lower {data.heading}, or "
+            f"the other, or that they are mostly less than {100 * EQUIVALENT:g} % apart (grey), the same in "
+            f"practice: Bayesian signed-rank test over {data.rigs} rigs (Benavoli et al. 2017)."
             f"{_lacking(data, 'is the worse one')}",
             data,
             lambda: draw_beliefs(data, given.looks),
