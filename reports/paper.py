@@ -266,7 +266,7 @@ report = rb.Report(
             ),
             methods=FISHEYE,
             metrics=("geometry", "row_error", "row_error_features", "reconstruction", "energy"),
-            figures=("bars", "scatter", "pairs", "maps", "energy", "squares", "clouds"),
+            figures=("bars", "coverage-curve", "pairs", "maps", "energy", "squares", "clouds"),
         ),
         rb.Group(
             name="perspective",

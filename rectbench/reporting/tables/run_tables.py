@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from rectbench.plugins.metric import Column
 from rectbench.reporting.names import one_line, pair_labels
+from rectbench.reporting.tables.captions import counted
 from rectbench.reporting.tables.numbers import MISSING
 from rectbench.reporting.tables.table import (
     Entry,
@@ -19,7 +20,7 @@ from rectbench.reporting.tables.table import (
     whole,
     words,
 )
-from rectbench.reporting.tables.tabulation import counted, heading, measured
+from rectbench.reporting.tables.tabulation import heading, measured
 from rectbench.runs.record import FoundPhotographs
 from rectbench.runs.run import Run
 
