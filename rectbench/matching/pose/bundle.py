@@ -110,8 +110,8 @@ class Equations:
     @cached_property
     def noise(self) -> float:
         """Standard deviation of a pixel coordinate, px."""
-        freedom = len(self.distances) / max(len(self.distances) - 5, 1)
-        return float(TO_DEVIATION * np.median(self.distances) * np.sqrt(freedom))
+        count = len(self.distances)
+        return float(TO_DEVIATION * np.median(self.distances) * count / max(count - PARAMETERS, 1))
 
     @cached_property
     def residual_weights(self) -> FloatArray:
@@ -155,7 +155,7 @@ class Equations:
 
 def _from_few(freedom: int) -> float:
     """Square of the size of F's region over that of χ²'s."""
-    largest = PARAMETERS * fdtri(PARAMETERS, max(WORTH * freedom, 1), COVERED)
+    largest = PARAMETERS * fdtri(PARAMETERS, max(WORTH * (freedom - PARAMETERS), 1), COVERED)
     return float(largest / chdtri(PARAMETERS, 1 - COVERED))
 
 
