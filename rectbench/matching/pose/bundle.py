@@ -150,7 +150,8 @@ class Equations:
         square = ((weights * self.distances[self.seen]) ** 2).sum() / freedom * (few / slope) ** 2
         spread = np.linalg.inv(_summed(self.information, self.leverage_weights))
         middle = _summed(self.information, self.leverage_weights**2)
-        return square * _from_few(freedom) * spread @ middle @ spread
+        covariance: FloatArray = square * _from_few(freedom) * spread @ middle @ spread
+        return covariance
 
 
 def _from_few(freedom: int) -> float:

