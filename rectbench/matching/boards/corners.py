@@ -4,7 +4,7 @@ They are the matches to trust: the board tells which corner is which, so that no
 found to a few hundredths of a pixel. On boards on a 640 px fisheye with noise of 2 grey levels,
 `cv2.cornerSubPix` is off by 0.02 px (RMS of a coordinate) where pixels are means of 64 samples, and by
 0.045 px where they are of 9, noisier at edges; in smaller windows and unsmoothed, by 0.034 and 0.062 px.
-OpenCV's own chessboard corners, from which the search starts here, are off by up to half a pixel under a fisheye lens.
+OpenCV's own corners, from which the search starts here, are off by up to half a pixel under a fisheye lens.
 """
 
 from __future__ import annotations
