@@ -67,7 +67,7 @@ def adjusted_distance(rig: rb.Rig, noise: Noise, count: int, seed: int) -> float
 
 @pytest.mark.parametrize("count", [30, 60, 100, 300])
 def test_the_region_of_95_percent_holds_95_percent(count: int) -> None:
-    """Of lenses and noises together to 2 %, and of each nearly so."""
+    """Of lenses and noises together to 2 %; of each as far as so few trials tell."""
     shares = {
         (name, noise.__name__): np.mean(
             [adjusted_distance(lens, noise, count, seed) < REGION for seed in range(TRIALS)]
@@ -76,7 +76,8 @@ def test_the_region_of_95_percent_holds_95_percent(count: int) -> None:
         for noise in (normal, students, contaminated)
     }
     assert 0.93 <= np.mean(list(shares.values())) <= 0.97
-    assert min(shares.values()) > 0.90, shares
+    # 60 trials tell a share of 95 % to 2.8 %: of 24 shares the least is as far as three times that.
+    assert min(shares.values()) > 0.86, shares
 
 
 TRIALS = 60
