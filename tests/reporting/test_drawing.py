@@ -104,11 +104,11 @@ def test_a_run_with_other_rows_takes_no_figure_from_the_store(
     write_report(copied(finished, tmp_path / "first"))
     other = copied(finished, tmp_path / "other")
     rows = read_run(other).table
-    rows["log_distortion"] *= 1.1
+    rows["distortion_native"] *= 1.1
     rows.to_parquet(other / PARQUET)
     wanted: list[str] = []
     monkeypatch.setattr(
         drawing.Workers, "run", lambda self, jobs: iter([wanted.append(job.arguments[1]) for job in jobs][:0])
     )
     write_report(other)
-    assert "log-distortion" in wanted
+    assert "distortion-native" in wanted

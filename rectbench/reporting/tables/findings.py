@@ -130,7 +130,7 @@ def _limit_text(limits: Mapping[str, _Limit]) -> str:
         (always, "in the whole view", ""),
         (
             crossing,
-            f"in views of up to {_views(crossing)}",
+            _views(crossing),
             f", {_winners(crossing)} having less in wider ones",
         ),
     ]
@@ -145,7 +145,9 @@ def _views(limits: Mapping[str, _Limit]) -> str:
     if not views:
         return ""
     low, high = f"{min(views):.0f}°", f"{max(views):.0f}°"
-    return f"{low} across" if low == high else f"{low} to {high} across (median {median(views):.0f}°)"
+    up_to = low if low == high else f"{low} to {high}"
+    middle = "" if low == high else f" (median {median(views):.0f}°)"
+    return f"in views of up to {up_to} across{middle}"
 
 
 def _winners(limits: Mapping[str, _Limit]) -> str:
