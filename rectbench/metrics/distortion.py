@@ -28,7 +28,7 @@ WEIGHTS = np.sqrt([1.0, 0.5, 0.5])
 
 STRETCH_PIXELS = (500, 4_000)
 """Pixels on which the best stretch is looked for and found: L is flat about its minimum, and 4,000 of 20,000
-pixels move it by less than a thousandth."""
+pixels move it by a few thousandths at the most."""
 
 
 class Distortion(float):
