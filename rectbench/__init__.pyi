@@ -20,6 +20,7 @@ from .errors import Unavailable as Unavailable
 from .errors import UnknownName as UnknownName
 from .errors import Unsupported as Unsupported
 from .experiments.claims import Claim as Claim
+from .experiments.claims import SourcePart as SourcePart
 from .experiments.claims import Statement as Statement
 from .experiments.spec import Group as Group
 from .experiments.spec import Report as Report
