@@ -201,7 +201,7 @@ def _against(statement: Statement, own: Sequence[Result], others: Sequence[Resul
 
 
 def _against_each(statement: Statement, own: Sequence[Result], rivals: Sequence[Sequence[Result]]) -> _Found:
-    """The largest ratio to any rival; 0 where none shows enough to have a number, infinite where it does not."""
+    """The largest ratio to any rival: 0 where no rival has a number, infinite where they alone have one."""
     if not all(rivals) or not own:
         return _Found({}, 0, ())
     alone = _alone(statement, own)

@@ -35,13 +35,14 @@ CLAIM = {
     "says": "It is the least of all, by ±0 %.",
     "statements": [
         {
-            "label": "pairs where it is least",
+            "label": "rigs where it is least",
             "group": "fisheye",
             "metric": "distortion_native",
             "method": OURS,
-            "measure": "wins",
+            "measure": "count",
             "rivals": ["abraham"],
-            "above": 2,
+            "above": 1,
+            "of": 1,
         }
     ],
     "because": {"held": "It is fitted to it."},
@@ -55,6 +56,7 @@ SPEC = {
     ],
     "stated_seconds": {"pose": 6.0, "fit": 3.0, "warp": 6.0},
     "claims": [CLAIM],
+    "source_parts": [{"name": "Its data", "status": "impossible", "why": "They are not public."}],
 }
 
 
@@ -110,7 +112,8 @@ def test_every_kind_of_figure_is_there_once_under_its_part_s_name(reported: Path
 
 
 def test_every_table_is_there_once_under_its_part_s_name(reported: Path) -> None:
-    stems = {"claims", "claims-measured", "failures", "starts", "timing", "pair-timing-street-t265"}
+    stems = {"claims", "claims-measured", "claims-by-rig-least-distortion", "source-parts", "failures"}
+    stems |= {"starts", "timing", "pair-timing-street-t265"}
     stems |= {f"{k}-fisheye" for k in ("distortion", "row-error", "pose", "reconstruction", "energy")}
     stems |= {"main-fisheye-estimated", "pair-fisheye-street-t265", "pair-fisheye-room-t265"}
     assert {path.stem for path in (reported / "tables").iterdir()} == stems
@@ -180,7 +183,16 @@ def test_a_claim_has_its_verdict_and_its_measurement(reported: Path) -> None:
     verdict = next(csv.DictReader((reported / "tables/claims.csv").open()))
     assert (verdict["verdict"], verdict["because"]) == ("held", "It is fitted to it.")
     measured = next(csv.DictReader((reported / "tables/claims-measured.csv").open()))
-    assert [measured[key] for key in ("mean", "low", "high", "pairs")] == ["2", "2", "2", "2 of 2"]
+    numbers = [measured[key] for key in ("mean", "low", "high", "rigs")]
+    assert numbers == ["1", "0.025", "1", "1 of 1"]  # the exact interval of one of one
+    (each,) = csv.DictReader((reported / "tables/claims-by-rig-least-distortion.csv").open())
+    assert float(each["t265"]) < 1
+
+
+def test_what_became_of_the_source_s_parts_is_told(reported: Path) -> None:
+    (part,) = csv.DictReader((reported / "tables/source-parts.csv").open())
+    assert (part["status"], part["why"]) == ("impossible", "They are not public.")
+    assert "They are not public." in " ".join(Page(reported / "index.html").words)
 
 
 def test_latex_of_all_parts_is_plain_and_balanced(write_run: WriteRun) -> None:

@@ -13,8 +13,8 @@ from rectbench.plugins.result import Result
 from rectbench.reporting.asked import methods_part, wanted_figures
 from rectbench.reporting.charts.starts import SAME_MINIMUM, Starts, start_study, study_method
 from rectbench.reporting.names import named, one_line, pair_labels, slug
-from rectbench.reporting.tables.numbers import MISSING, three_digits
 from rectbench.reporting.tables.claims_tables import claims_tables
+from rectbench.reporting.tables.numbers import MISSING, three_digits
 from rectbench.reporting.tables.run_tables import failures_table, photograph_tables
 from rectbench.reporting.tables.table import (
     Entry,
