@@ -61,10 +61,12 @@ from .rigs import Rig as Rig
 from .rigs import RigCovariance as RigCovariance
 from .types import Images as Images
 from .types import Matches as Matches
+from .warps import Composed as Composed
 from .warps import Cubic as Cubic
 from .warps import Epipolar as Epipolar
 from .warps import Framing as Framing
 from .warps import Perspective as Perspective
+from .warps import PolynomialInverse as PolynomialInverse
 from .warps import Profile as Profile
 from .warps import Radial as Radial
 from .warps import Rectification as Rectification
