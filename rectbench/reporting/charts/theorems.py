@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -155,7 +155,7 @@ class Theorems(Figure):
                 "The same points in the left and right rectified image, a colour for each epipolar plane, "
                 "under four choices of A and A′. Theorem 1: the first rows of A and A′ are free, so that "
                 "columns are; the 2×2 blocks that make the rows are one, up to a factor. Theorem 2: so û and "
-                "v̂ may be chosen apart, and at each pixel anew, as long as v̂ is a function of the plane alone. "
+                "v̂ may be chosen apart, and at each pixel anew, as long as v̂ is a function of the plane. "
                 "Chosen freely at each pixel, as the sentence after Theorem 1 can be read, the block loses "
                 "the rows."
             ),
@@ -168,7 +168,8 @@ def _draw(shown: tuple[Example, ...]) -> matplotlib.figure.Figure:
     from matplotlib.figure import Figure as Canvas
 
     figure = Canvas(figsize=(PAGE_INCHES, 2.6), layout="constrained")
-    for cell, example in zip(np.ravel(figure.subfigures(1, len(shown))), shown, strict=True):
+    cells: Any = figure.subfigures(1, len(shown))
+    for cell, example in zip(cells, shown, strict=True):
         cell.suptitle(f"{example.title}\nlargest row error {100 * example.row_error:.1f} %", fontsize=6.5)
         left, right = cell.subplots(1, 2, sharey=True)
         _draw_image(left, example.left, "left")
