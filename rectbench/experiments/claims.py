@@ -67,6 +67,8 @@ class Statement(BaseModel):
     """True where the quantity is at most this."""
     of: int | None = None
     """Of how many rigs `above` is a count: 3 of 4 is claimed of 6 of 8, too."""
+    judges: bool = True
+    """Whether the claim stands on it; else it stands beside it, to compare with."""
 
     @model_validator(mode="after")
     def _can_be_false(self) -> Statement:
@@ -125,9 +127,15 @@ class Claim(BaseModel):
     name: str
     says: str
     """The claim in a sentence."""
-    statements: tuple[Statement, ...] = Field(min_length=1)
+    statements: tuple[Statement, ...]
     because: Mapping[Verdict, str]
     """One sentence why, for each verdict it may get. Of `undecided` the run itself says why."""
+
+    @model_validator(mode="after")
+    def _stands_on_something(self) -> Claim:
+        if not any(statement.judges for statement in self.statements):
+            raise ValueError(f"claim '{self.name}' has no statement that judges it; expected one")
+        return self
 
 
 class SourcePart(BaseModel):

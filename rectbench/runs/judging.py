@@ -16,6 +16,7 @@ import math
 from collections.abc import Collection, Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
+from rectbench.errors import InvalidInput
 from rectbench.experiments.claims import Claim, Statement, Verdict
 from rectbench.plugins.result import Result
 from rectbench.statistics.intervals import (
@@ -53,7 +54,7 @@ class Measured:
     failed: int = 0
     """Cells that hold no measurement."""
     absent: tuple[str, ...] = ()
-    """Rigs without a value, because the images that a method makes do not show that much."""
+    """Rigs without a value: a method does not serve them, or its images do not show that much."""
     remark: str = ""
     """Why it is undecided, and how probable a count is."""
 
@@ -72,8 +73,8 @@ class Judged:
         """Why it is so, as the claim states for this verdict; else what the measurements lack."""
         if self.verdict in self.claim.because:
             return self.claim.because[self.verdict]
-        undecided = [test for test in self.tests if test.verdict == "undecided"]
-        return "; ".join(dict.fromkeys(test.remark for test in undecided if test.remark))
+        undecided = [t for t in self.tests if t.statement.judges and t.verdict == "undecided"]
+        return "; ".join(dict.fromkeys(t.remark for t in undecided if t.remark))
 
 
 def judged_claims(
@@ -88,7 +89,8 @@ def _judged(claim: Claim, rows: Sequence[Result], columns: Collection[str]) -> J
     tests = tuple(_measured(s, rows if s.metric in columns else ()) for s in claim.statements)
     ways: dict[str, list[Verdict]] = {}
     for test in tests:
-        ways.setdefault(test.statement.clause, []).append(test.verdict)
+        if test.statement.judges:
+            ways.setdefault(test.statement.clause, []).append(test.verdict)
     clauses = {clause: _of_ways(verdicts) for clause, verdicts in ways.items()}
     return Judged(claim, _of_clauses(list(clauses.values())), clauses, tests)
 
@@ -179,24 +181,29 @@ class _Found:
 
 
 def _alone(statement: Statement, own: Sequence[Result]) -> _Found:
-    numbers: _Numbers = {(*_place(row), row.cell.options): _number(row, statement) for row in own if row.ok}
-    return _found(numbers, sum(not row.ok for row in own))
+    numbers: _Numbers = {(*_place(row), row.cell.options): _number(row, statement) for row in own}
+    return _found(numbers, sum(map(_has_failed, own)))
 
 
 def _against(statement: Statement, own: Sequence[Result], others: Sequence[Result]) -> _Found:
     """Ratios, or whether they are within; cells that have no partner say nothing."""
     partners = {_place(other): other for other in others}
+    if len(partners) < len(others):
+        raise InvalidInput(
+            f"statement '{statement.label}' compares with several sets of options of {statement.against}; "
+            "expected against_options that name one"
+        )
     pairs = [(row, partners[_place(row)]) for row in own if _place(row) in partners]
-    sound = [(row, other) for row, other in pairs if row.ok and other.ok]
+    failed = sum(_has_failed(row) or _has_failed(other) for row, other in pairs)
     numbers: _Numbers = {
         (*_place(row), row.cell.options): _log_ratio(_number(row, statement), _number(other, statement))
-        for row, other in sound
+        for row, other in pairs
     }
     if statement.within is not None:
         low, high = map(_log, statement.within)
         shares: _Numbers = {key: _share(low <= value <= high, value) for key, value in numbers.items()}
-        return _found(shares, len(pairs) - len(sound))
-    found = _found(numbers, len(pairs) - len(sound))
+        return _found(shares, failed)
+    found = _found(numbers, failed)
     return replace(found, by_rig={rig: math.exp(value) for rig, value in found.by_rig.items()})
 
 
@@ -217,6 +224,11 @@ def _found(numbers: _Numbers, failed: int) -> _Found:
     by_rig = {str(rig): value for rig, value in nested_means(numbers).items()}
     absent = dict.fromkeys(str(key[0]) for key in numbers if key[0] not in by_rig)
     return _Found(by_rig, failed, tuple(absent))
+
+
+def _has_failed(row: Result) -> bool:
+    """What a method cannot serve is no failure of the measurement: it has no value there."""
+    return row.status not in ("ok", "unsupported")
 
 
 def _number(row: Result, statement: Statement) -> float:

@@ -156,6 +156,20 @@ def test_a_rig_that_a_method_does_not_show_enough_of_is_named_and_no_failure() -
     assert (test.verdict, test.failed, test.absent) == ("held", 0, ("rig3",))
 
 
+def test_a_rig_that_a_method_does_not_serve_is_named_and_no_failure() -> None:
+    table = rows("ours", np.full((4, 1), 0.5)) + rows("theirs", np.ones((4, 1)))
+    table[-1].update(status="unsupported", x=math.nan)
+    test = judge(table, ratio(below=0.6)).tests[0]
+    assert (test.verdict, test.failed, test.absent) == ("held", 0, ("rig3",))
+
+
+def test_what_stands_beside_a_claim_does_not_judge_it() -> None:
+    judged = judge(HALVES, ratio(below=0.6), ratio(above=0.6, judges=False))
+    assert (judged.verdict, [test.verdict for test in judged.tests]) == ("held", ["held", "not held"])
+    with pytest.raises(ValidationError, match="no statement that judges it"):
+        judge(HALVES, ratio(below=0.6, judges=False))
+
+
 def test_what_was_not_measured_is_neither_held_nor_not() -> None:
     judged = judge([], ratio(below=0.6))
     assert judged.verdict == "not measured"
@@ -245,6 +259,8 @@ def test_a_variant_is_compared_with_by_its_options() -> None:
     table = rows("ours", np.ones((3, 1))) + rows("theirs", np.full((3, 1), 2.0)) + theirs
     test = judge(table, ratio(below=1.0, against_options={"focal": "balance"})).tests[0]
     assert test.interval.estimate == pytest.approx(0.25)
+    with pytest.raises(rb.InvalidInput, match="several sets of options of theirs"):
+        judge(table, ratio(below=1.0))
 
 
 def test_a_part_of_a_whole_is_judged_by_its_share() -> None:

@@ -106,9 +106,9 @@ def _measured_row(test: Measured) -> tuple[Entry, ...]:
     found, statement = test.interval, test.statement
     shown_as = _SHARE if statement.measure == "count" else _NUMBER
     suffix = " %" if shown_as is _SHARE else ""
-    remarks = [test.remark, f"failed cells: {test.failed}" if test.failed else ""]
+    remarks = ["" if statement.judges else "to compare with", test.remark]
     if test.absent:
-        remarks.append(f"not shown by the images on {', '.join(test.absent)}")
+        remarks.append(f"no image, or none that shows that much, on {', '.join(test.absent)}")
     return (
         words(statement.clause),
         words(statement.label),
