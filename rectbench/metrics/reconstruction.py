@@ -83,7 +83,8 @@ def depth_errors(reconstruction: Reconstruction, truth: Truth, pixels: FloatArra
         )
     u, v = pixels.astype(int).T
     depth = np.linalg.norm(reconstruction.points_at(reconstruction.rect.left.forward(pixels)), axis=-1)
-    return np.asarray(np.abs(depth / truth.depth_left[v, u].astype(np.float64) - 1))
+    error: FloatArray = np.abs(depth / truth.depth_left[v, u].astype(np.float64) - 1)
+    return error
 
 
 def _share(mask: BoolArray) -> float:
