@@ -1,6 +1,7 @@
 from . import metrics as metrics
 from .api import estimate_pose as estimate_pose
 from .api import export_dataset as export_dataset
+from .api import plan as plan
 from .api import rectify as rectify
 from .api import rectify_images as rectify_images
 from .api import render as render
@@ -59,6 +60,8 @@ from .rendering.world import Sun as Sun
 from .rendering.world import World as World
 from .rigs import Rig as Rig
 from .rigs import RigCovariance as RigCovariance
+from .scored import Delivered as Delivered
+from .scored import ScoredView as ScoredView
 from .types import Images as Images
 from .types import Matches as Matches
 from .warps import Composed as Composed

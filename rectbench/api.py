@@ -16,7 +16,7 @@ from rectbench.applications.one_rig import checked_rig, estimate_rig_pose, recti
 from rectbench.applications.requests.photographs import PoseSettings, RectifyRequest
 from rectbench.applications.requests.rendering import ExportRequest, RenderRequest
 from rectbench.applications.requests.request import SeededMethodRequest
-from rectbench.applications.requests.running import RunRequest
+from rectbench.applications.requests.running import PlanRequest, RunRequest
 from rectbench.calibrations.reading import RigSource
 from rectbench.matching.features.matches import RATIO
 from rectbench.matching.pose.estimate import POSE_PIXELS, PoseEstimate
@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from rectbench.experiments.spec import Report
     from rectbench.images.stereo_pair import StereoPair
     from rectbench.rendering.truth import Truth
+    from rectbench.runs.designing import Design
 
 
 def rectify(
@@ -283,3 +284,34 @@ def run(
     from rectbench.applications.run_report import run_report
 
     return run_report(RunRequest(**given), progress)
+
+
+def plan(
+    report: Report | str | Path,
+    detect: float | str = "2%",
+    metric: str | None = None,
+    run: str | Path | None = None,
+) -> Design:
+    """How many rigs, scenes and seeds would tell a difference between two methods, by a run that is there.
+
+    Parameters
+    ----------
+    report : a report's name, path, or the report itself.
+    detect : the relative difference to be told: "2%", or 0.02.
+    metric : the column that is compared, such as "row_error_mean_px"; by default the one that methods
+        are ranked by.
+    run : the folder of a run of the report; `runs/<report>` by default.
+
+    Returns the design, whose `table` has a row for each pair of methods; see `rectbench.runs.designing`.
+    Raises InvalidInput where there is no run yet, UnknownName for a column that it does not have.
+
+    >>> import rectbench as rb
+    >>> table = rb.plan("quick", detect="5%").table  # doctest: +SKIP
+    >>> rb.plan("quick", detect=0)
+    Traceback (most recent call last):
+    rectbench.errors.InvalidInput: detect is 0; expected a percentage above 0 such as 2%
+    """
+    request = PlanRequest(**locals())
+    from rectbench.applications.plan_report import plan_report
+
+    return plan_report(request)

@@ -10,7 +10,7 @@ from typing import Literal
 import numpy as np
 
 from rectbench.calibrations import load_rig
-from rectbench.errors import Unsupported
+from rectbench.errors import InvalidResult, Unsupported
 from rectbench.experiments.execution.outcomes import outcome_of
 from rectbench.metrics import row_error
 from rectbench.pairs.rendering import placed
@@ -18,6 +18,8 @@ from rectbench.plugins.fitting import checked_options, fit
 from rectbench.plugins.rectifier import Problem, Rectifier, pose_problem
 from rectbench.registry import Plugin
 from rectbench.rigs import Rig
+from rectbench.scored import Delivered, ScoredView, check_agreement
+from rectbench.scored.agreement import PLACES
 from rectbench.types import FloatArray, Matches
 from rectbench.warps import Rectification, Warp
 
@@ -172,6 +174,15 @@ def _unseen_matches(rig: Rig, count: int = 3000) -> Matches:
     return Matches(pixels[seen], pixels_right[seen])
 
 
+def _agreement(plugin: Plugin[Rectifier], problem: Problem, rect: Rectification) -> tuple[bool, str]:
+    delivered = Delivered.of(rect, ScoredView.of(problem.rig))
+    try:
+        check_agreement(rect, delivered)
+    except InvalidResult as disagreement:
+        return False, str(disagreement)
+    return True, f"one map at {2 * PLACES} places; {delivered.kept_share:.0%} of the view kept"
+
+
 def _repeatable(plugin: Plugin[Rectifier], problem: Problem, rect: Rectification) -> tuple[bool, str]:
     again = fit(plugin, problem, checked_options(plugin, {}))
     if again.size != rect.size:
@@ -183,4 +194,4 @@ def _repeatable(plugin: Plugin[Rectifier], problem: Problem, rect: Rectification
     return True, "the same maps twice"
 
 
-_CHECKS: tuple[Check, ...] = (_maps, _closure, _jacobian, _orientation, _rows, _repeatable)
+_CHECKS: tuple[Check, ...] = (_maps, _closure, _jacobian, _orientation, _rows, _agreement, _repeatable)

@@ -1,7 +1,8 @@
 """Which rectifier is the best for a rig: all that apply, measured in the frame that is asked for.
 
-The rule: of the methods whose rows are as good as the best ones', the one with the least log distortion of
-the pixels that it keeps, each showing the same share of the view.
+The rule: of the methods whose rows are as good as the best ones', the one with the least log distortion on
+the same source pixels: the share of the view nearest to its middle that is asked for, or the asked field of
+view.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
+import numpy as np
 import pandas as pd
 
 from rectbench.errors import InvalidInput, Unsupported
@@ -19,14 +21,19 @@ from rectbench.plugins.fitting import checked_options, fit
 from rectbench.plugins.rectifier import METHODS, Problem, Rectifier, pose_problem
 from rectbench.registry import Plugin, registry
 from rectbench.rigs import Rig
+from rectbench.scored import Delivered, ScoredView, check_agreement
+from rectbench.scored.delivered import differences
 from rectbench.types import Images, Matches
-from rectbench.warps import Framing, Rectification, framed
+from rectbench.warps import Framing, Rectification, centre_rays, framed, rectifying_rotations
+from rectbench.warps.frame import angles
+from rectbench.warps.jacobians import log_distortion_parts
+from rectbench.warps.lookup.resampling import SIDES
 
 COVERAGE = 0.95
 """The share of the source pixels that every method is made to show where nothing else is asked."""
 ROWS_AS_GOOD_PX = 0.25
 """Rows count as good as the best ones while their median error is no more than this above, source pixels."""
-RANKING = "log_distortion_kept"
+RANKING = "log_distortion_on_view"
 ROWS = "row_error_source_median_px"
 
 
@@ -76,7 +83,7 @@ class Choice:
         """The rule and how it fell out, in a sentence."""
         parts = [
             f"{self.best.method} has the least log distortion, {self.best.measured[RANKING]:.3f}, "
-            f"where each method shows {_shown(self.framing)}"
+            f"on {_shown(self.framing)}"
         ]
         others = [c for c in self.candidates[1:] if c.rectification is not None]
         if rivals := [c for c in others if _rows_are_good(c, self.candidates)]:
@@ -128,7 +135,8 @@ def best_method(
     problem = pose_problem(rig, images=images, matches=matches, seed=seed)
     found = registry(METHODS)
     plugins = found.plugins() if methods is None else [found.get(name) for name in methods]
-    tried = [_tried(plugin, problem, chosen, trusted) for plugin in plugins]
+    view = ScoredView.of(rig)
+    tried = [_tried(plugin, problem, view, chosen, trusted) for plugin in plugins]
     if not any(candidate.rectification for candidate in tried):
         reasons = "; ".join(f"{candidate.method}: {candidate.reason}" for candidate in tried)
         raise Unsupported(f"no method applies to rig {rig.name}: {reasons}")
@@ -141,19 +149,47 @@ def uncalibrated_methods() -> list[str]:
 
 
 def _tried(
-    plugin: Plugin[Rectifier], problem: Problem, framing: Framing, trusted: Matches | None
+    plugin: Plugin[Rectifier],
+    problem: Problem,
+    view: ScoredView,
+    framing: Framing,
+    trusted: Matches | None,
 ) -> Candidate:
     if "images" in plugin.value.needs and problem.images is None:
         return Candidate(plugin.name, status="unsupported", reason="works from images, and there are none")
     try:
-        rect = framed(fit(plugin, problem, checked_options(plugin, {})), framing)
-        measured = frame_costs(rect, problem.rig)
+        own = fit(plugin, problem, checked_options(plugin, {}))
+        check_agreement(own, Delivered.of(own, view))
+        rect = framed(own, framing)
+        measured = {**frame_costs(rect, problem.rig), RANKING: log_distortion_where(own, view, framing)}
         if trusted is not None:
             measured[ROWS] = row_error(rect, *trusted).columns()[ROWS]
     except Exception as error:  # a plugin may raise anything, and the others are still to be tried
         outcome = outcome_of(error)
         return Candidate(plugin.name, status=outcome.status, reason=outcome.reason)
-    return Candidate(plugin.name, rect, measured)
+    reason = "" if math.isfinite(measured[RANKING]) else f"does not map all of {_shown(framing)}"
+    return Candidate(plugin.name, rect, measured, reason=reason)
+
+
+def log_distortion_where(rect: Rectification, view: ScoredView, framing: Framing) -> float:
+    """Log distortion on the source pixels that a framing speaks of, whatever the rectification's own frame
+    shows.
+
+    On the share of the view nearest to its middle for a coverage, else on the pixels within the field of
+    view. NaN where the rectification does not map them all.
+    """
+    found = []
+    middle = np.mean(angles(centre_rays(rect.rig)), axis=-1)
+    for side, R_epi_cam in zip(SIDES, rectifying_rotations(rect.rig), strict=True):
+        scored = view.side(side)
+        if framing.fov_deg is None:
+            asked = scored.pixels[: scored.count(framing.coverage or 1.0)]
+        else:
+            off = np.stack(angles(scored.camera.unproject(scored.pixels)[0] @ R_epi_cam.T), axis=-1) - middle
+            asked = scored.pixels[(np.abs(off) <= np.radians(framing.fov_deg) / 2).all(axis=-1)]
+        found.append(differences(rect.warp(side), asked)[1])
+    J = np.concatenate(found)
+    return log_distortion_parts(J)[0] if np.isfinite(J).all() else math.nan
 
 
 def _rank(candidate: Candidate, all_tried: Sequence[Candidate]) -> tuple[bool, bool, float]:
@@ -170,5 +206,5 @@ def _rows_are_good(candidate: Candidate, all_tried: Sequence[Candidate]) -> bool
 def _shown(framing: Framing) -> str:
     if framing.fov_deg is not None:
         across, down = framing.fov_deg
-        return f"a view of {across:g}x{down:g}°"
-    return f"{framing.coverage:.0%} of the source pixels"
+        return f"the same view of {across:g}x{down:g}°"
+    return f"the {framing.coverage:.0%} of the source pixels nearest to the middle of the view"

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from rectbench.errors import UnknownName
 
 if TYPE_CHECKING:
+    from rectbench.cameras import Camera
     from rectbench.registry import Kind
 
 LISTABLE = {
@@ -75,7 +76,25 @@ def _rigs() -> Iterator[Entry]:
     for name in rig_names():
         rig = load_rig(name)
         size, baseline_mm = f"{rig.left.width}x{rig.left.height}", 1000 * rig.baseline_m
-        yield Entry(name, f"{rig.left.model}, {size}, baseline {baseline_mm:.0f} mm")
+        across, down = _fields_of_view_deg(rig.left)
+        view = f"{across:.0f}° x {down:.0f}°"
+        yield Entry(name, f"{rig.left.model}, {size}, {view}, baseline {baseline_mm:.0f} mm")
+
+
+def _fields_of_view_deg(camera: Camera) -> tuple[float, float]:
+    """The angles that the image's row and column through the lens's axis span, degrees."""
+    import numpy as np
+
+    axis, _ = camera.project([0.0, 0.0, 1.0])
+    spans = []
+    for along in (0, 1):
+        places = np.arange(-0.5, camera.size[along])
+        line = np.tile(axis, (len(places), 1))
+        line[:, along] = places
+        rays, seen = camera.unproject(line)
+        x, y, z = rays[seen][[0, -1]].T
+        spans.append(float(np.degrees(np.arctan2(np.hypot(x, y), z)).sum()))
+    return spans[0], spans[1]
 
 
 def _motions() -> Iterator[Entry]:

@@ -20,6 +20,7 @@ for command in (
     running.report,
     running.gate,
     running.compare,
+    running.plan,
     rendering.render,
     rendering.export,
     photographs.rectify,

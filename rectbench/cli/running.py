@@ -8,7 +8,7 @@ from typing import Annotated
 
 from typer import Argument, Option
 
-from rectbench.applications.requests.running import RunRequest
+from rectbench.applications.requests.running import PlanRequest, RunRequest
 from rectbench.cli.app import GOOD, INCOMPLETE, parts, verb
 from rectbench.errors import UnknownName
 
@@ -82,7 +82,7 @@ def compare(
     b: Annotated[Path, Argument(metavar="B", help="Another.")],
     metrics: Annotated[list[str] | None, Option(metavar="NAMES", help="Only these columns.")] = None,
 ) -> int:
-    """Compare two runs cell by cell: the median change B - A of every metric, with its 95 % interval."""
+    """Compare two runs cell by cell: how much each metric changed, with its 95 % interval over rigs."""
     from rectbench.cli.printing.running import show_comparison
     from rectbench.runs import comparing
 
@@ -95,6 +95,16 @@ def compare(
             raise UnknownName("metric", name, known)
     show_comparison(comparison, wanted or known)
     return INCOMPLETE if comparison.table.empty else GOOD
+
+
+@verb(PlanRequest)
+def plan(request: PlanRequest) -> int:
+    """Tell how many rigs, scenes and seeds would tell methods apart, by a run that is there."""
+    from rectbench.applications.plan_report import plan_report
+    from rectbench.cli.printing.design import show_design
+
+    show_design(plan_report(request))
+    return GOOD
 
 
 def _incomplete(reason: object) -> int:

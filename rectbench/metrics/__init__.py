@@ -13,6 +13,7 @@ from rectbench.metrics.distortion import distortion as distortion
 from rectbench.metrics.distortion import distortion_of as distortion_of
 from rectbench.metrics.energy import energy_convex_share as energy_convex_share
 from rectbench.metrics.log_distortion import log_distortion as log_distortion
+from rectbench.metrics.log_distortion import log_distortion_on_view as log_distortion_on_view
 from rectbench.metrics.order import order as order
 from rectbench.metrics.pose import Pose as Pose
 from rectbench.metrics.reconstruction import reconstruction_scores as reconstruction_scores
@@ -20,7 +21,7 @@ from rectbench.metrics.row_error import RowError as RowError
 from rectbench.metrics.row_error import row_error as row_error
 from rectbench.metrics.row_error_board import BoardRowError as BoardRowError
 from rectbench.metrics.row_error_features import FeatureRowError as FeatureRowError
-from rectbench.metrics.sampling import every_pixel as every_pixel
-from rectbench.metrics.sampling import per_pixel as per_pixel
+from rectbench.metrics.sampling import sampling as sampling
 from rectbench.metrics.timing import Timing as Timing
+from rectbench.metrics.view import View as View
 from rectbench.warps.jacobians import Jacobians as Jacobians

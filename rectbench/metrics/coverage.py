@@ -99,7 +99,7 @@ class Coverage(Metric):
             "higher",
             "Share of the lens's solid angle that is kept.",
             tolerance=Tolerance(0.0, 0.002),
-            shown="summary",
+            shown="page",
             promised=True,
         ),
         Column.share(

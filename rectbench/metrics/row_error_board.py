@@ -46,4 +46,5 @@ class BoardRowError(Metric):
         case.remarks["board"] = board.kind
         errors = row_error(case.rect, *board.matches).columns()
         errors["row_error_points"] = errors["row_error_matches"]
-        return {column.key: errors[column.key.replace("_board", "")] for column in self.columns}
+        found = {column.key: errors.get(column.key.replace("_board", "")) for column in self.columns}
+        return {key: value for key, value in found.items() if value is not None}

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from rectbench.errors import PoseNotFound
-from rectbench.metrics.row_error import row_error
+from rectbench.metrics.row_error import equal_view_columns, on_equal_view, row_error
 from rectbench.plugins.metric import Case, Column, Metric, Tolerance
+
+PREFIX = "row_error_features"
 
 
 class FeatureRowError(Metric):
@@ -36,6 +38,7 @@ class FeatureRowError(Metric):
         Column.count(
             "row_error_features_matches", "SIFT matches", "SIFT matches that their row error is taken over."
         ),
+        *equal_view_columns(PREFIX, "row error, SIFT", "the SIFT matches", shown="pairs"),
     )
 
     def compute(self, case: Case) -> dict[str, float]:
@@ -45,5 +48,7 @@ class FeatureRowError(Metric):
         except PoseNotFound as failure:
             case.remarks["no_features"] = str(failure)
             return {}
-        errors = row_error(case.rect, *matches).columns()
-        return {column.key: errors[column.key.replace("_features", "")] for column in self.columns}
+        errors = row_error(case.rect, *matches)
+        shown = {key.replace("row_error", PREFIX): value for key, value in errors.columns().items()}
+        keys = {column.key for column in self.columns}
+        return {k: v for k, v in shown.items() if k in keys} | on_equal_view(case, matches, errors, PREFIX)

@@ -1,115 +1,41 @@
-"""What happens at every pixel, not at the 500 alone: distortion, pixels lost and pixels invented."""
+"""Sampling: the shares of the source in which pixels are lost and in which they are invented."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from typing import Any
 
 import numpy as np
 
-from rectbench.formulas.evaluation import evaluate_points
-from rectbench.metrics.distortion import PROTOCOLS, WEIGHTS, distortion_column
 from rectbench.plugins.metric import Case, Column, Metric
-from rectbench.types import FloatArray
-from rectbench.warps import Rectification, Warp, evaluation_pixels
-from rectbench.warps.jacobians import Jacobians, losses, singular_values
+from rectbench.warps.jacobians import Jacobians, entries, singular_values
 
-UNIT_TOLERANCE = 1e-9
+UNIT_TOLERANCE = 1e-6
 """A singular value this near to 1 is an unchanged length, not a lost or invented pixel."""
 
-ROWS_AT_ONCE = 400
-"""Rows of an image looked at in one go: what many megapixels need at once would be gigabytes."""
 
-SCALING_PIXELS = 10_000
-"""Pixels an image on which the best scales are found: L is flat about its minimum."""
+def sampling(jacobians: Jacobians) -> dict[str, float]:
+    """Shares of the pixels at which some direction shrinks, and at which some direction grows.
 
+    Where σ2 < 1 pixels are lost, where σ1 > 1 they are invented; most maps do a little of both nearly
+    everywhere.
 
-def every_pixel(rect: Rectification) -> dict[str, float]:
-    """Over all mapped pixels of both images: mean L under each protocol, and shares of pixels by sampling.
-
-    `sampling_lost` is the share of the source area where some direction shrinks (σ2 < 1: pixels are
-    lost), `sampling_invented` where some direction grows (σ1 > 1: pixels are invented).
-
-    >>> import rectbench as rb
-    >>> found = every_pixel(rb.rectify(rb.load_rig("t265"), method="abraham"))
-    >>> 0 <= found["sampling_lost"] <= 1
-    True
+    >>> import numpy as np
+    >>> halved = np.full((1, 2, 2), 0.5) * np.eye(2)
+    >>> sampling(Jacobians(halved, halved))
+    {'sampling_lost': 1.0, 'sampling_invented': 0.0}
     """
-    left, right = (
-        warp.jacobian(evaluation_pixels(warp.source, SCALING_PIXELS)) for warp in (rect.left, rect.right)
-    )
-    both = Jacobians(left, right).both
-    scales = [find(both) for find in PROTOCOLS.values()]
-    sums, count = np.zeros(len(scales) + 2), 0
-    for warp in (rect.left, rect.right):
-        for rows in np.array_split(warp.source.pixel_grid(), math.ceil(warp.source.height / ROWS_AT_ONCE)):
-            values = per_pixel(warp, rows, scales).reshape(-1, len(sums))
-            mapped = np.isfinite(values[:, 0])
-            sums += values.sum(axis=0, where=mapped[:, None])
-            count += int(mapped.sum())
-    names = (*(f"distortion_{name}_all_pixels" for name in PROTOCOLS), "sampling_lost", "sampling_invented")
-    return dict(zip(names, map(float, sums / count if count else np.full(len(sums), math.nan)), strict=True))
-
-
-def per_pixel(
-    warp: Warp, pixels: FloatArray, scales: Sequence[tuple[float, float]] = ((1.0, 1.0),)
-) -> FloatArray:
-    """L at each of the K scales (s_u, s_v), and whether a pixel is lost and one invented (0 or 1).
-
-    At source pixels [..., 2]: [..., K + 2].
-    """
-    constants = {"warp": warp.constants, "scales": tuple(scales)}
-    return evaluate_points(_formula(warp), constants, pixels)[0]
-
-
-def _formula(warp: Warp) -> Callable[..., tuple[Any, ...]]:
-    weights = [float(weight) ** 2 for weight in WEIGHTS]
-
-    def formula(c: Any, u: Any, v: Any, xp: Any) -> tuple[Any, ...]:
-        p, q, r, s, ok = warp.jacobian_formula(c.warp, u, v, xp)
-
-        def loss(s_u: Any, s_v: Any) -> Any:
-            area, ratio, skew = losses(s_u * p, s_u * q, s_v * r, s_v * s, xp)
-            return weights[0] * area * area + weights[1] * ratio * ratio + weights[2] * skew * skew
-
-        large, small = singular_values(p, q, r, s, xp)
-        lost = xp.where(small < 1.0 - UNIT_TOLERANCE, 1.0, 0.0 * small)
-        invented = xp.where(large > 1.0 + UNIT_TOLERANCE, 1.0, 0.0 * large)
-        return *(loss(s_u, s_v) for s_u, s_v in c.scales), lost, invented, ok
-
-    return formula
-
-
-class AllPixelsDistortion(Metric):
-    """Distortion L over every pixel of both images, under each protocol."""
-
-    name, topic = "distortion_all_pixels", "Distortion"
-    columns = (
-        distortion_column(
-            "distortion_native_all_pixels",
-            "native, all pixels",
-            "Native L over every pixel, not the grid.",
-            panel="native, over all pixels",
-        ),
-        distortion_column(
-            "distortion_rescaled_all_pixels", "rescaled, all pixels", "The same after the one best scale."
-        ),
-        distortion_column(
-            "distortion_stretched_all_pixels",
-            "stretched, all pixels",
-            "The same after the best scales of width and of height.",
-        ),
-    )
-
-    def compute(self, case: Case) -> dict[str, float]:
-        """Of both images together."""
-        found = case.once(every_pixel)
-        return {column.key: found[column.key] for column in self.columns}
+    both = jacobians.both
+    if not len(both):
+        return {"sampling_lost": math.nan, "sampling_invented": math.nan}
+    large, small = singular_values(*entries(both), np)
+    return {
+        "sampling_lost": float((small < 1 - UNIT_TOLERANCE).mean()),
+        "sampling_invented": float((large > 1 + UNIT_TOLERANCE).mean()),
+    }
 
 
 class Sampling(Metric):
-    """Shares of the source area in which pixels are lost and in which they are invented."""
+    """Shares of what is shown of the source in which pixels are lost, and in which they are invented."""
 
     name, topic = "sampling", "Sampling"
     columns = (
@@ -131,5 +57,4 @@ class Sampling(Metric):
 
     def compute(self, case: Case) -> dict[str, float]:
         """Of both images together."""
-        found = case.once(every_pixel)
-        return {column.key: found[column.key] for column in self.columns}
+        return sampling(case.delivered.shown)

@@ -15,12 +15,12 @@ from rectbench.store.closure import PACKAGE
 
 BUNDLES: Mapping[str, tuple[str, ...]] = {
     "geometry": (
+        "log_distortion",
         "distortion",
         "distortion_detail",
-        "distortion_all_pixels",
-        "log_distortion",
-        "sampling",
+        "view",
         "coverage",
+        "sampling",
         "order",
     ),
 }

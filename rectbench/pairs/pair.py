@@ -18,6 +18,7 @@ from rectbench.pairs.spec import ESTIMATED, PhotographedSpec, RenderedSpec
 from rectbench.rendering.truth import Truth
 from rectbench.rigs import Rig
 from rectbench.rigs.poses import POSES, perturb
+from rectbench.scored import ScoredView
 from rectbench.store.keys import Inputs, derived_seed
 from rectbench.store.store import Store
 from rectbench.types import Matches
@@ -43,6 +44,11 @@ class Pair(ABC):
     @abstractmethod
     def rig(self) -> Rig:
         """The true rig; of photographs the calibrated one."""
+
+    @cached_property
+    def scored_view(self) -> ScoredView:
+        """The source pixels that rectifications are scored on, the same for all methods."""
+        return ScoredView.of(self.rig)
 
     @property
     @abstractmethod

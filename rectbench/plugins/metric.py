@@ -17,14 +17,14 @@ from rectbench.plugins.cell import IDENTITY
 from rectbench.registry.kind import Described, Kind, described_object
 from rectbench.rendering.truth import Truth
 from rectbench.rigs import Rig
+from rectbench.scored import Delivered, ScoredView
 from rectbench.types import Matches
 from rectbench.warps import Rectification
-from rectbench.warps.jacobians import Jacobians
 
 Better = Literal["lower", "higher"]
-Average = Literal["mean", "rms", "max", "min"]
+Average = Literal["mean", "geometric", "rms", "max", "min"]
 Need = Literal["truth", "images"]
-Shown = Literal["pairs", "topic", "page", "summary"]
+Shown = Literal["rows", "pairs", "topic", "page", "summary"]
 
 T = TypeVar("T")
 
@@ -68,12 +68,13 @@ class Column:
     heading, unit : what stands above it; the shown number is the stored one times `scale`.
     better : which way is good, None where neither is.
     meaning : one sentence for the glossary.
-    average : how cells are averaged. RMS values are pooled as such, a maximum stays one.
+    average : how cells are averaged. What has no upper bound is averaged by its logarithm ("geometric"), or
+        one cell would be all that is seen; RMS values are pooled as such, a maximum stays one.
     floor : shown numbers below this are shown as "<floor".
     is_count : whether the number counts things, and is shown whole.
     tolerance : how far it may be worse than accepted before a gate closes; None where no gate looks at it.
-    shown : where it first appears: in the table of each pair alone, also in its topic's table, also in the
-        main table on the page, or in the main table on a terminal too.
+    shown : where it first appears: in the rows alone, also in the table of each pair, also in its topic's
+        table, also in the main table on the page, or in the main table on a terminal too.
     without_truth : whether the main tables show it only where nobody knows the truth, as of photographs.
     promised : whether the rows have the column even where it was not asked for, empty then.
     ranks : whether methods are ranked by it; one column of all metrics is.
@@ -156,6 +157,10 @@ class Known(Protocol):
         """The true rig; of photographs the calibrated one."""
 
     @property
+    def scored_view(self) -> ScoredView:
+        """The source pixels that rectifications are scored on, the same for all methods."""
+
+    @property
     def images(self) -> StereoPair:
         """The images, rendered or photographed."""
 
@@ -211,7 +216,7 @@ class Case:
     """Seconds of the fit that gave `rect`."""
     remarks: dict[str, str] = field(default_factory=dict)
     """What is to be said beside the numbers, by a name; metrics add theirs."""
-    _made: dict[Callable[[Rectification], Any], Any] = field(default_factory=dict, init=False, repr=False)
+    _made: dict[Callable[[Case], Any], Any] = field(default_factory=dict, init=False, repr=False)
 
     @property
     def rig(self) -> Rig:
@@ -219,16 +224,20 @@ class Case:
         return self.pair.rig
 
     @property
-    def jacobians(self) -> Jacobians:
-        """At the evaluation pixels of both images."""
-        return self.once(Jacobians.at)
+    def delivered(self) -> Delivered:
+        """What the map does at the scored pixels, as it is shown: what distortion is made of."""
+        return self.once(_delivered)
 
-    def once(self, compute: Callable[[Rectification], T]) -> T:
-        """`compute` of the rectification, done once however many metrics ask for it."""
+    def once(self, compute: Callable[[Case], T]) -> T:
+        """`compute` of this case, done once however many metrics ask for it."""
         if compute not in self._made:
-            self._made[compute] = compute(self.rect)
+            self._made[compute] = compute(self)
         made: T = self._made[compute]
         return made
+
+
+def _delivered(case: Case) -> Delivered:
+    return Delivered.of(case.rect, case.pair.scored_view)
 
 
 class Metric(ABC):

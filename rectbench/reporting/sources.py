@@ -24,7 +24,7 @@ from rectbench.store.keys import digest
 from rectbench.store.store import Store
 from rectbench.warps import Rectification
 
-_FINGERPRINT = "distortion_native"
+_FINGERPRINT = "distortion_native_grid"
 _SAME_FIT = 1e-3
 
 

@@ -8,24 +8,23 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from rectbench.runs.bootstrap import interval
 from rectbench.runs.gating import KEY
 from rectbench.runs.record import LEADING, TEXTS
 from rectbench.runs.run import read_run
-from rectbench.types import FloatArray
+from rectbench.statistics.intervals import mean_interval, nested_means
 
-DIFFERENCE_RESAMPLES = 2000
-LEAST_PAIRS = 3
-"""Fewer pairs than these carry no interval."""
+LEVELS = ["rig", "motion", "scene", "pose", "options", "seed"]
+"""From what is drawn independently to what is nested in it."""
 
 
 @dataclass(frozen=True)
 class Comparison:
     """What changed from run A to run B.
 
-    `table` has a row for each method and metric: `pairs`, the medians of A and B, the median of the
-    paired differences B - A, and the ends `low`, `high` of its 95 % bootstrap interval (NaN for fewer
-    than 3 pairs). `unpaired` says which cells stand in one run alone, or failed in one.
+    `table` has a row for each method and metric: `pairs` of cells and the `rigs` they are of, the medians
+    of A and B, the mean `difference` B - A over rigs, the scenes and seeds of each averaged first, and the
+    ends `low`, `high` of its 95 % t interval over rigs, NaN for fewer than 3 rigs. `unpaired` says which
+    cells stand in one run alone, or failed in one.
     """
 
     table: pd.DataFrame
@@ -45,41 +44,33 @@ def compare(a: Path, b: Path) -> Comparison:
         if name.endswith("_a") and f"{name[:-2]}_b" in both and name[:-2] not in (*LEADING, *TEXTS)
     ]
     rows = [
-        {"method": method, "metric": metric, **_difference(cells[f"{metric}_a"], cells[f"{metric}_b"])}
+        {"method": method, "metric": metric, **_difference(cells, metric)}
         for method, cells in both[ok].groupby("method", sort=True)
         for metric in metrics
     ]
-    columns = ["method", "metric", "pairs", "median_a", "median_b", "difference", "low", "high"]
+    columns = ["method", "metric", "pairs", "rigs", "median_a", "median_b", "difference", "low", "high"]
     table = pd.DataFrame(rows, columns=columns)
     return Comparison(table[table["pairs"] > 0].reset_index(drop=True), unpaired)
 
 
-def _difference(a: pd.Series[float], b: pd.Series[float]) -> dict[str, float]:
-    pairs = a.notna() & b.notna()
-    first, second = a[pairs].to_numpy(dtype=float), b[pairs].to_numpy(dtype=float)
+def _difference(cells: pd.DataFrame, metric: str) -> dict[str, float]:
+    a, b = cells[f"{metric}_a"], cells[f"{metric}_b"]
+    both = a.notna() & b.notna()
+    first, second = a[both].to_numpy(dtype=float), b[both].to_numpy(dtype=float)
     if not len(first):
         return {"pairs": 0}
-    differences = second - first
-    low, high = _interval(differences)
+    differences = np.subtract(second, first, out=np.zeros_like(first), where=first != second)  # inf, too
+    places = cells.loc[both, LEVELS].itertuples(index=False, name=None)
+    found = mean_interval(nested_means(dict(zip(places, differences.tolist(), strict=True))).values())
     return {
         "pairs": len(first),
+        "rigs": found.units,
         "median_a": float(np.median(first)),
         "median_b": float(np.median(second)),
-        "difference": float(np.median(differences)),
-        "low": low,
-        "high": high,
+        "difference": found.estimate,
+        "low": found.low,
+        "high": found.high,
     }
-
-
-def _interval(differences: FloatArray) -> tuple[float, float]:
-    """That of the median, each difference being a cluster of its own."""
-    if len(differences) < LEAST_PAIRS:
-        return np.nan, np.nan
-    return interval(
-        list(differences[:, None, None]),
-        lambda drawn: np.median(drawn[..., 0, 0], axis=-1),
-        DIFFERENCE_RESAMPLES,
-    )
 
 
 def _differs(row: pd.Series[str]) -> bool:

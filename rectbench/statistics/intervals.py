@@ -8,8 +8,10 @@ the units allow.
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Hashable, Iterable, Mapping
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 from scipy.special import betaincinv, stdtrit
@@ -19,14 +21,19 @@ from rectbench.types import FloatArray
 
 LEAST_UNITS = 3
 """Fewer units carry no interval: with two it would be 9 times as wide as their distance."""
+LARGEST_LOG = math.log(sys.float_info.max)
+Path = TypeVar("Path", bound=tuple[Hashable, ...])
+"""From a unit down to what is nested in it."""
 
 
 @dataclass(frozen=True)
 class Interval:
-    """An estimate and the ends of its interval; `low` and `high` are NaN where the units are too few for one.
+    """An estimate and the ends of its interval.
 
-    >>> mean_interval([1.0, 2.0]).why_none
-    '2 units: too few for an interval'
+    `low` and `high` are NaN where the units are too few for an interval, or one of them is infinite.
+
+    >>> mean_interval([1.0, 2.0]).why_none("rig")
+    '2 rigs: too few for an interval'
     """
 
     estimate: float
@@ -34,10 +41,11 @@ class Interval:
     high: float
     units: int
 
-    @property
-    def why_none(self) -> str:
+    def why_none(self, unit: str = "unit") -> str:
         """What stands in the place of the interval where there is none; empty where there is one."""
-        return "" if math.isfinite(self.low) else f"{counted(self.units)}: too few for an interval"
+        if self.units < LEAST_UNITS:
+            return f"{counted(self.units, unit)}: too few for an interval"
+        return "unbounded" if math.isnan(self.low) else ""
 
 
 def mean_interval(values: Iterable[float], level: float = 0.95) -> Interval:
@@ -66,7 +74,7 @@ def geometric_interval(values: Iterable[float], level: float = 0.95) -> Interval
     if wrong := [value for value in numbers if not value > 0]:
         raise InvalidInput(f"a value is {wrong[0]:g}; expected numbers above 0 for a geometric mean")
     logs = mean_interval(map(math.log, numbers), level)
-    return Interval(math.exp(logs.estimate), math.exp(logs.low), math.exp(logs.high), logs.units)
+    return Interval(ratio(logs.estimate), ratio(logs.low), ratio(logs.high), logs.units)
 
 
 def count_interval(successes: int, trials: int, level: float = 0.95) -> Interval:
@@ -88,7 +96,7 @@ def count_interval(successes: int, trials: int, level: float = 0.95) -> Interval
     return Interval(successes / trials, float(low), float(high), trials)
 
 
-def nested_means(labelled: Mapping[tuple[Hashable, ...], float]) -> dict[Hashable, float]:
+def nested_means(labelled: Mapping[Path, float]) -> dict[Hashable, float]:
     """The value of each unit: the mean over its motions of the mean over scenes of the mean over seeds.
 
     Keys are (unit, motion, scene, seed), of any depth, the same for all; values that are NaN are left
@@ -98,7 +106,9 @@ def nested_means(labelled: Mapping[tuple[Hashable, ...], float]) -> dict[Hashabl
     >>> nested_means({**street, ("t265", "room", 0): 6.0, ("tumvi", "room", 0): 5.0})
     {'t265': 4.0, 'tumvi': 5.0}
     """
-    means = {tuple(key): value for key, value in labelled.items() if not math.isnan(value)}
+    means: dict[tuple[Hashable, ...], float] = {
+        key: value for key, value in labelled.items() if not math.isnan(value)
+    }
     while means and len(next(iter(means))) > 1:
         groups: dict[tuple[Hashable, ...], list[float]] = {}
         for key, value in means.items():
@@ -112,15 +122,21 @@ def margins(values: FloatArray, level: float = 0.95) -> FloatArray:
     units = values.shape[-1]
     if units < LEAST_UNITS:
         return np.full(values.shape[:-1], math.nan)
-    spread = np.std(values, axis=-1, ddof=1)
+    with np.errstate(invalid="ignore"):  # infinite values have no spread
+        spread = np.std(values, axis=-1, ddof=1)
     margin: FloatArray = stdtrit(units - 1, (1 + level) / 2) * spread / math.sqrt(units)
     return margin
 
 
-def counted(units: int) -> str:
+def ratio(log: float) -> float:
+    """The number of which this is the logarithm; infinite where it is too large for a float."""
+    return math.inf if log > LARGEST_LOG else math.exp(log)
+
+
+def counted(units: int, unit: str = "unit") -> str:
     """How many units there are, in words.
 
-    >>> counted(1)
-    '1 unit'
+    >>> counted(1), counted(2, "rig")
+    ('1 unit', '2 rigs')
     """
-    return f"{units} unit" if units == 1 else f"{units} units"
+    return f"{units} {unit}{'' if units == 1 else 's'}"

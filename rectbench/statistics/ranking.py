@@ -5,16 +5,20 @@ from __future__ import annotations
 import math
 from collections.abc import Hashable, Mapping
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 
-from rectbench.statistics.intervals import LEAST_UNITS
+from rectbench.statistics.intervals import LEAST_UNITS, counted, ratio
 from rectbench.statistics.paired import NOISE, better, log_ratios
 from rectbench.statistics.power import resolved
 from rectbench.types import FloatArray
 
-Values = Mapping[str, Mapping[Hashable, float]]
-"""By method and unit; lower is better."""
+Unit = TypeVar("Unit", bound=Hashable)
+
+
+LEAST_SIGNED_RANK_UNITS = 6
+"""With five units the least two-sided p of a signed-rank test is 2 / 2**5 = 0.0625."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +43,7 @@ class Ranking:
     reason: str
 
 
-def rank(values: Values, *, floor: float = NOISE, unit: str = "unit") -> Ranking:
+def rank(values: Mapping[str, Mapping[Unit, float]], *, floor: float = NOISE, unit: str = "unit") -> Ranking:
     """Rank methods by their values on each unit, lower being better.
 
     Parameters
@@ -79,11 +83,23 @@ def rank(values: Values, *, floor: float = NOISE, unit: str = "unit") -> Ranking
     return Ranking(tuple(order), ranks, _resolves(logs), len(units), "")
 
 
+def signed_rank_caveat(units: int, unit: str = "unit") -> str:
+    """What is to be said of ranks over so few units that no signed-rank test could back them; else empty.
+
+    >>> signed_rank_caveat(5, "rig")
+    '5 rigs: below 6 no signed-rank test reaches 0.05; ranks rest on t tests of log ratios, taken for normal'
+    """
+    if not LEAST_UNITS <= units < LEAST_SIGNED_RANK_UNITS:
+        return ""
+    below = f"below {LEAST_SIGNED_RANK_UNITS} no signed-rank test reaches 0.05"
+    return f"{counted(units, unit)}: {below}; ranks rest on t tests of log ratios, taken for normal"
+
+
 def _why_none(order: list[str], ranked: list[str], units: int, unit: str) -> str:
     if order and not ranked:
         return f"no method has a number on each {unit}"
     if units < LEAST_UNITS:
-        return f"{units} {unit if units == 1 else unit + 's'}: too few to tell methods apart"
+        return f"{counted(units, unit)}: too few to tell methods apart"
     return ""
 
 
@@ -92,8 +108,8 @@ def _resolves(logs: FloatArray) -> float | None:
     if not len(first):
         return None
     spreads = np.std(log_ratios(logs)[first, second], axis=-1, ddof=1)
-    return math.exp(resolved(float(np.median(spreads)), logs.shape[-1], tests=len(first)))
+    return ratio(resolved(float(np.median(spreads)), logs.shape[-1], tests=len(first)))
 
 
-def _mean_log(numbers: Mapping[Hashable, float]) -> float:
+def _mean_log(numbers: Mapping[Unit, float]) -> float:
     return math.fsum(map(math.log, numbers.values())) / len(numbers) if numbers else math.inf

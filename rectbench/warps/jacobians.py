@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,7 +11,6 @@ from numpy.typing import ArrayLike
 
 from rectbench.types import FloatArray
 from rectbench.warps import Rectification, evaluation_pixels
-from rectbench.warps.rectification import in_frame
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,15 +31,6 @@ class Jacobians:
             for warp in (rect.left, rect.right)
         )
         return cls(left.reshape(-1, 2, 2), right.reshape(-1, 2, 2))
-
-    @classmethod
-    def kept(cls, rect: Rectification, count: int = 2000) -> Jacobians:
-        """At those of about `count` pixels of each image that stay in the frame."""
-        sides = []
-        for warp in (rect.left, rect.right):
-            pixels = evaluation_pixels(warp.source, count)
-            sides.append(warp.jacobian(pixels[in_frame(warp.forward(pixels), rect.size)]))
-        return cls(*sides)
 
     @property
     def both(self) -> FloatArray:
@@ -71,6 +62,21 @@ def singular_values(a: Any, b: Any, c: Any, d: Any, xp: Any) -> tuple[Any, Any]:
     p = 0.5 * xp.hypot(a + d, c - b)
     q = 0.5 * xp.hypot(a - d, c + b)
     return p + q, xp.abs(p - q)
+
+
+def log_distortion_parts(J: FloatArray) -> tuple[float, float, float]:
+    """RMS of log σ1 and log σ2 of Jacobians [N, 2, 2] about their common mean; its parts area and anisotropy.
+
+    The square of the first is the sum of the squares of the others: what changes in size from place to place,
+    and what is squeezed. NaN without Jacobians, and where one is singular.
+    """
+    large, small = singular_values(*entries(J), np)
+    if not large.size or not (small > 0).all():
+        return math.nan, math.nan, math.nan
+    size = (np.log(large) + np.log(small)) / 2
+    squeeze = (np.log(large) - np.log(small)) / 2
+    area, anisotropy = float(np.std(size)), float(np.sqrt(np.square(squeeze).mean()))
+    return math.hypot(area, anisotropy), area, anisotropy
 
 
 def entries(J: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:

@@ -52,4 +52,6 @@ FAULTS = {
 @pytest.mark.parametrize("name", FAULTS)
 def test_each_fault_fails_its_check_and_no_other(tmp_path: Path, name: str) -> None:
     check, fault = FAULTS[name]
-    assert set(failed(write_method(tmp_path, name, fault))) == {check}
+    assert set(failed(write_method(tmp_path, name, fault))) - {"agreement"} == {
+        check
+    }  # which sees all of them

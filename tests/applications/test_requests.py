@@ -13,7 +13,7 @@ import rectbench as rb
 from rectbench.applications.requests.photographs import PoseSettings, RectifyRequest, UncertaintyRequest
 from rectbench.applications.requests.rendering import ExportRequest, RenderRequest
 from rectbench.applications.requests.request import Request
-from rectbench.applications.requests.running import RunRequest
+from rectbench.applications.requests.running import PlanRequest, RunRequest
 
 NOT_IN_THE_REQUEST = {"progress", "images", "framing"}
 PUBLIC = [
@@ -21,6 +21,7 @@ PUBLIC = [
     (rb.render, RenderRequest),
     (rb.export_dataset, ExportRequest),
     (rb.run, RunRequest),
+    (rb.plan, PlanRequest),
 ]
 
 
@@ -36,7 +37,9 @@ def test_the_defaults_of_python_are_those_of_the_request(
             assert same or str(default) == str(field.default), name
 
 
-@pytest.mark.parametrize("request_type", [RectifyRequest, RenderRequest, ExportRequest, RunRequest])
+@pytest.mark.parametrize(
+    "request_type", [RectifyRequest, RenderRequest, ExportRequest, RunRequest, PlanRequest]
+)
 def test_every_field_is_described(request_type: type[Request]) -> None:
     for name, field in request_type.model_fields.items():
         assert field.description, name

@@ -276,7 +276,7 @@ finally:
     print(*sys.modules, file=sys.stderr)
 """
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    verbs = ("list", "run", "report", "gate", "compare", "render", "rectify", "check", "doctor", "gc")
+    verbs = ("list", "run", "report", "gate", "compare", "plan", "render", "rectify", "check", "doctor", "gc")
     for verb in verbs:
         assert re.search(rf"\b{verb}\b", done.stdout)
     imported = set(done.stderr.split())
@@ -287,7 +287,7 @@ finally:
 
 
 @pytest.mark.parametrize(
-    "verb", ["list", "run", "report", "gate", "compare", "render", "rectify", "check", "gc"]
+    "verb", ["list", "run", "report", "gate", "compare", "plan", "render", "rectify", "check", "gc"]
 )
 def test_every_verb_has_help(shell: Shell, verb: str) -> None:
     code, out, _ = shell(verb, "--help")

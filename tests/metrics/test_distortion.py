@@ -8,8 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import rectbench as rb
-from rectbench.metrics import Jacobians, distortion_of, every_pixel, log_distortion
+from rectbench.metrics import Jacobians, distortion_of, log_distortion, sampling
 from rectbench.metrics.distortion import best_scale, best_stretch
+from rectbench.scored import Delivered, ScoredView
 from rectbench.warps.jacobians import entries, singular_values
 from tests.rigs_for_tests import aligned_rig, rig
 
@@ -140,23 +141,30 @@ def scaled_pinhole(left: tuple[float, float], right: tuple[float, float]) -> rb.
     return rb.Rectification(pair, warps[0], warps[1], (90, 60))
 
 
+def delivered(rect: rb.Rectification) -> Jacobians:
+    return Delivered.of(rect, ScoredView.of(rect.rig)).shown
+
+
 def test_sampling_counts_lost_and_invented_pixels() -> None:
-    result = every_pixel(scaled_pinhole(left=(0.5, 0.5), right=(2.0, 1.0)))
-    assert result["sampling_lost"] == pytest.approx(0.75)
-    assert result["sampling_invented"] == pytest.approx(0.25)
+    result = sampling(delivered(scaled_pinhole(left=(0.5, 0.5), right=(2.0, 1.0))))
+    # Each image counts as much as the other, and of the right one the frame shows a third.
+    assert result["sampling_lost"] == pytest.approx(0.75, abs=0.02)
+    assert result["sampling_invented"] == pytest.approx(0.25, abs=0.02)
 
 
 def test_an_unchanged_image_loses_and_invents_nothing() -> None:
-    result = every_pixel(scaled_pinhole(left=(1, 1), right=(1, 1)))
-    assert result == pytest.approx(dict.fromkeys(result, 0.0), abs=1e-20)
+    shown = delivered(scaled_pinhole(left=(1, 1), right=(1, 1)))
+    assert sampling(shown) == {"sampling_lost": 0.0, "sampling_invented": 0.0}
+    assert float(distortion_of(shown)) == pytest.approx(0, abs=1e-20)
 
 
-def test_distortion_at_every_pixel_is_the_metric_at_every_pixel() -> None:
+def test_distortion_at_the_scored_pixels_is_that_of_every_pixel() -> None:
     pair = rig("unified", size=(200, 140))
     rect = rb.rectify(pair)
     everywhere = pair.left.pixel_grid().reshape(-1, 2)
     expected = rb.metrics.distortion(rect, pair, pixels=everywhere)
-    assert every_pixel(rect)["distortion_native_all_pixels"] == pytest.approx(float(expected), rel=1e-9)
+    shown = Delivered.of(rect, ScoredView.of(pair)).shown
+    assert distortion_of(shown) == pytest.approx(float(expected), rel=0.005)
 
 
 def test_pixels_that_are_not_mapped_are_left_out_and_counted() -> None:

@@ -42,6 +42,10 @@ class Exact:
     knows_truth: bool = True
     board: None = None
 
+    @property
+    def scored_view(self) -> rb.ScoredView:
+        return rb.ScoredView.of(self.rig, count=500)
+
     def features(self, *, by_estimate: bool) -> rb.Matches:
         return self.true_matches
 
@@ -113,7 +117,7 @@ def test_no_metric_takes_another_ones_column(tmp_path: Path) -> None:
 
 def test_one_column_ranks_and_each_has_one_metric() -> None:
     columns = known().columns
-    assert [column.key for column in columns if column.ranks] == ["log_distortion"]
+    assert [column.key for column in columns if column.ranks] == ["log_distortion_95"]
     assert len({column.key for column in columns}) == len(columns)
 
 

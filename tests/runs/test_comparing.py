@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -12,21 +13,29 @@ from rectbench.experiments.execution.running import Execution
 from rectbench.experiments.planning import make_plan
 from rectbench.runs.comparing import compare
 from rectbench.runs.record import RunRecord, table_of, write_run
+from rectbench.statistics.intervals import mean_interval
 from tests.experiments.fakes import small_report
 
-SEEDS = tuple(range(12))
+RIGS, SEEDS = ("t265", "tumvi", "sony-as200v", "canon-8mm"), (0, 1, 2)
+CELLS = tuple(product(RIGS, SEEDS))
 
 
-def write(folder: Path, shift: float, spread: float = 0.0, failed: tuple[int, ...] = ()) -> Path:
-    """A run whose log distortion is 1 to 12 by seed, plus `shift`, plus noise of `spread`."""
-    plan = make_plan(small_report(methods=("abraham",), seeds=SEEDS))
-    noise = np.random.default_rng(3).normal(0, spread, len(SEEDS)) if spread else np.zeros(len(SEEDS))
-    outcomes = [
-        Outcome("crash", "x")
-        if seed in failed
-        else Outcome(metrics={"log_distortion": 1.0 + seed + shift + noise[seed]})
-        for seed in SEEDS
-    ]
+def write(
+    folder: Path,
+    shift: float,
+    spread: float = 0.0,
+    failed: tuple[int, ...] = (),
+    rigs: tuple[str, ...] = RIGS,
+) -> Path:
+    """A run whose log distortion is 1 to 12 by cell, plus `shift`, plus noise of `spread` a rig."""
+    plan = make_plan(small_report(methods=("abraham",), rigs=rigs, seeds=SEEDS))
+    noise = dict(zip(RIGS, np.random.default_rng(3).normal(0, spread, len(RIGS)), strict=True))
+    outcomes = []
+    for number, task in enumerate(plan.tasks):
+        value = 1.0 + number + shift + noise[task.cell.rig]
+        outcomes.append(
+            Outcome("crash", "x") if number in failed else Outcome(metrics={"log_distortion": value})
+        )
     write_run(folder, table_of(plan, outcomes), RunRecord.of(Execution(plan, outcomes, 1, 1, None), 1.0))
     return folder
 
@@ -39,20 +48,32 @@ def row(a: Path, b: Path) -> pd.Series:
 
 def test_the_difference_is_paired_by_cell(tmp_path: Path) -> None:
     found = row(write(tmp_path / "a", 0.0), write(tmp_path / "b", 0.01))
-    assert found["pairs"] == 12
+    assert (found["pairs"], found["rigs"]) == (12, 4)
     assert found["median_a"] == pytest.approx(6.5)
     # Cells spread over 11 units; only pairing shows a change of a hundredth so sharply.
     assert found["difference"] == pytest.approx(0.01)
     assert (found["low"], found["high"]) == (pytest.approx(0.01), pytest.approx(0.01))
 
 
-def test_the_interval_covers_noise_and_is_repeatable(tmp_path: Path) -> None:
-    a, b = write(tmp_path / "a", 0.0), write(tmp_path / "b", 0.0, spread=0.1)
-    found = row(a, b)
-    assert found["low"] < 0 < found["high"]
-    pd.testing.assert_series_equal(found, row(a, b))
-    far = row(a, write(tmp_path / "c", 1.0, spread=0.1))
-    assert far["low"] > 0.5
+def test_the_interval_is_over_rigs_and_not_over_their_seeds(tmp_path: Path) -> None:
+    found = row(write(tmp_path / "a", 0.0), write(tmp_path / "b", 1.0, spread=0.1))
+    expected = mean_interval(1.0 + np.random.default_rng(3).normal(0, 0.1, len(RIGS)))
+    assert (found["difference"], found["low"], found["high"]) == pytest.approx(
+        (expected.estimate, expected.low, expected.high)
+    )
+
+
+def test_two_rigs_have_no_interval(tmp_path: Path) -> None:
+    two = [write(tmp_path / name, 0.0, rigs=RIGS[:2]) for name in "ab"]
+    found = row(*two)
+    assert (found["pairs"], found["rigs"], found["difference"]) == (6, 2, 0.0)
+    assert np.isnan(found["low"])
+    assert np.isnan(found["high"])
+
+
+def test_a_number_that_is_infinite_in_both_has_not_changed(tmp_path: Path) -> None:
+    runs = [write(tmp_path / name, np.inf) for name in "ab"]
+    assert row(*runs)["difference"] == 0.0
 
 
 def test_cells_that_failed_in_one_are_told_and_left_out(tmp_path: Path) -> None:
@@ -63,7 +84,7 @@ def test_cells_that_failed_in_one_are_told_and_left_out(tmp_path: Path) -> None:
 
 
 def test_runs_without_a_common_cell_compare_to_nothing(tmp_path: Path) -> None:
-    everything = tuple(SEEDS)
+    everything = tuple(range(len(CELLS)))
     comparison = compare(write(tmp_path / "a", 0.0), write(tmp_path / "b", 0.0, failed=everything))
     assert comparison.table.empty
     with pytest.raises(rb.InvalidInput, match="is no run's folder"):

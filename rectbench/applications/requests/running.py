@@ -1,4 +1,5 @@
-"""What the run of a report takes, on the command line, in Python, and in a TOML file beside the report.
+"""What the run of a report takes, on the command line, in Python, and in a TOML file beside the report; and
+what is asked of its design.
 
 [run]
 methods = ["abraham", "mine.py"]
@@ -16,10 +17,16 @@ from numbers import Integral
 from pathlib import Path
 from typing import Annotated, Any
 
-from pydantic import StrictBool, model_validator
+from pydantic import ConfigDict, StrictBool, model_validator
 
 from rectbench.applications.requests.request import Request, Text, number, positional, word
-from rectbench.applications.requests.words import OptionSets, listed, option_sets_in, whole_numbers_in
+from rectbench.applications.requests.words import (
+    OptionSets,
+    listed,
+    option_sets_in,
+    share_in,
+    whole_numbers_in,
+)
 from rectbench.errors import InvalidInput, UnknownName
 
 Jobs = Annotated[int, number(Integral, "a whole number from 1 on", lambda n: n >= 1)]
@@ -66,6 +73,17 @@ class RunRequest(Request):
         except InvalidInput as error:
             raise InvalidInput(f"{path}: {error}") from None
         return {**settings, **given, "options": overlaid(options, option_sets_in(given.get("options")))}
+
+
+class PlanRequest(Request):
+    """A difference that a report is to tell, judged by a run of it that is there."""
+
+    model_config = ConfigDict(validate_default=True)
+    report: Any = positional("REPORT", "A report's name, or the path of its file.")
+    detect: Any = word("The difference that is to be told.", default="2%", metavar="PERCENT", parse=share_in)
+    """A share, once it is checked."""
+    metric: str | None = word("The column that is compared; by default the one that methods are ranked by.")
+    run: Path | None = word("The folder of a run of the report; runs/REPORT by default.", metavar="FOLDER")
 
 
 def overlaid(*layers: OptionSets) -> OptionSets:

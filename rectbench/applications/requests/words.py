@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import tomllib
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
@@ -80,6 +81,19 @@ def focal_in(text: str) -> Any:
     if text == "source":
         return text
     return _numbers([text], f"focal is {text}; expected a number of pixels, or source")[0]
+
+
+def share_in(given: Any, info: ValidationInfo) -> float:
+    """The share that a percentage such as 2 % means, or a number below 1 such as 0.02."""
+    refusal = f"{info.field_name} is {given!r}; expected a percentage above 0 such as 2%"
+    text = str(given).strip()
+    if isinstance(given, bool):
+        raise InvalidInput(refusal)
+    (number,) = _numbers([text.removesuffix("%")], refusal, 1)
+    share = number / 100 if text.endswith("%") else number
+    if not 0 < share < (math.inf if text.endswith("%") else 1):
+        raise InvalidInput(refusal)
+    return share
 
 
 def option_sets_in(words: Mapping[str, Mapping[str, Any]] | Sequence[str] | None) -> Any:

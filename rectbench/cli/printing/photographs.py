@@ -75,7 +75,8 @@ def _show_choice(screen: Console, choice: Choice) -> None:
         found = candidate.measured
         rows = found.get("row_error_source_median_px")
         rows_px = "" if rows is None else f"{rows:.2f}"
-        distortion = f"{found['log_distortion_kept']:.3f}" if found else ""
+        value = found.get("log_distortion_on_view", math.nan)
+        distortion = f"{value:.3f}" if math.isfinite(value) else "–" if found else ""
         size = f"{found['width_px']:.0f}x{found['height_px']:.0f}" if found else ""
         table.add_row(candidate.method, distortion, rows_px, size, Text(candidate.reason, style="yellow"))
     screen.print(table)

@@ -13,6 +13,7 @@ from rich.text import Text
 from rectbench.cli.printing.screen import console, plain_table
 from rectbench.reporting.tables.tabulation import main_tables
 from rectbench.runs.run import read_run
+from rectbench.statistics.intervals import Interval
 
 if TYPE_CHECKING:
     from rectbench.runs.comparing import Comparison
@@ -62,11 +63,13 @@ SHOWN_DIFFERENCES = 40
 
 def show_comparison(comparison: Comparison, metrics: Collection[str]) -> None:
     """The paired differences of these metrics, a row a method and metric."""
-    screen, table = console(), plain_table("method", "metric", "pairs", "A", "B", "B - A", "95 % interval")
+    headings = ("method", "metric", "pairs", "median A", "median B", "mean B - A", "95 % interval over rigs")
+    screen, table = console(), plain_table(*headings)
     for row in comparison.table.to_dict("records"):
         if row["metric"] not in metrics:
             continue
-        interval = "" if row["low"] != row["low"] else f"{row['low']:.3g} to {row['high']:.3g}"
+        found = Interval(row["difference"], row["low"], row["high"], int(row["rigs"]))
+        interval = found.why_none("rig") or f"{found.low:.3g} to {found.high:.3g}"
         numbers = (f"{row[name]:.5g}" for name in ("median_a", "median_b"))
         table.add_row(
             row["method"], row["metric"], str(row["pairs"]), *numbers, f"{row['difference']:+.3g}", interval

@@ -19,6 +19,7 @@ from rectbench.plugins.fitting import check_result, checked_options
 from rectbench.plugins.metric import Case
 from rectbench.plugins.rectifier import METHODS, Problem, pose_problem
 from rectbench.registry import registry
+from rectbench.scored import check_agreement
 from rectbench.store.keys import Inputs, code_digest, versions
 from rectbench.store.store import Store
 from rectbench.types import Images
@@ -142,5 +143,6 @@ def _measured(task: CellTask, pair: Pair) -> Outcome:
     case = Case(
         rectification, pair, pose_is_estimated=task.cell.pose == ESTIMATED, fit=fit, first_fit_s=first_fit_s
     )
+    check_agreement(rectification, case.delivered)
     columns = score(case, task.metrics)
     return Outcome(metrics=columns, notes={**rectification.notes, **case.remarks})

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from rectbench.metrics.coverage import coverage
 from rectbench.metrics.log_distortion import log_distortion
-from rectbench.metrics.sampling import every_pixel
+from rectbench.metrics.sampling import sampling
 from rectbench.rigs import Rig
+from rectbench.scored import Delivered, ScoredView
 from rectbench.warps import Rectification, centre_resolution_px
-from rectbench.warps.jacobians import Jacobians
 from rectbench.warps.view.framing import focal_px
 
 
@@ -17,7 +17,7 @@ def frame_costs(rect: Rectification, rig: Rig) -> dict[str, float]:
     - `width_px`, `height_px` of the rectified images; `focal_px` on the rectified frame's axis, and
       `magnification`, that against the source's at its centre.
     - `coverage_pixels`, `coverage_solid_angle`, `coverage_overlap`, `valid_output`, see `coverage`.
-    - `sampling_lost`, `sampling_invented`, see `every_pixel`.
+    - `sampling_lost`, `sampling_invented`, see `sampling`.
     - `log_distortion_kept`: log distortion over the pixels that stay in the frame.
 
     >>> import rectbench as rb
@@ -27,7 +27,7 @@ def frame_costs(rect: Rectification, rig: Rig) -> dict[str, float]:
     True
     """
     focal = focal_px(rect)
-    shares, sampled = coverage(rect, rig), every_pixel(rect)
+    shares, shown = coverage(rect, rig), Delivered.of(rect, ScoredView.of(rig)).shown
     return {
         "width_px": float(rect.size[0]),
         "height_px": float(rect.size[1]),
@@ -37,6 +37,6 @@ def frame_costs(rect: Rectification, rig: Rig) -> dict[str, float]:
             name: shares[name]
             for name in ("coverage_pixels", "coverage_solid_angle", "coverage_overlap", "valid_output")
         },
-        **{name: sampled[name] for name in ("sampling_lost", "sampling_invented")},
-        "log_distortion_kept": log_distortion(Jacobians.kept(rect))["log_distortion"],
+        **sampling(shown),
+        "log_distortion_kept": log_distortion(shown)["log_distortion"],
     }

@@ -66,6 +66,7 @@ def _average(shown_as: Column, values: Sequence[float]) -> Averaged:
 
 _AVERAGES: dict[Average, Callable[[FloatArray], float]] = {
     "mean": np.mean,
+    "geometric": lambda values: np.exp(np.mean(np.log(values))),
     "rms": lambda values: np.sqrt(np.mean(values**2)),
     "max": np.max,
     "min": np.min,

@@ -17,6 +17,7 @@ from rectbench.warps.lookup.tables import FloatMap
 from rectbench.warps.warp import Warp
 
 Side = Literal["left", "right"]
+SIDES: tuple[Side, Side] = ("left", "right")
 Filter = Literal["point", "area"]
 REMAPPED_TYPES = tuple(map(np.dtype, ("uint8", "uint16", "int16", "float32", "float64")))
 """What `cv2.remap` resamples."""
