@@ -67,7 +67,8 @@ def counted_pixels(truth: Truth) -> FloatArray:
     """The pixels [N, 2] of the left source image that depth is scored at: those that both cameras see."""
     pixels = dense_pixels(truth.rig.left)
     u, v = pixels.astype(int).T
-    return pixels[truth.visible_left[v, u] & np.isfinite(truth.depth_left[v, u])]
+    counted: BoolArray = truth.visible_left[v, u] & np.isfinite(truth.depth_left[v, u])
+    return np.asarray(pixels[counted])
 
 
 def depth_errors(reconstruction: Reconstruction, truth: Truth, pixels: FloatArray) -> FloatArray:
@@ -83,8 +84,7 @@ def depth_errors(reconstruction: Reconstruction, truth: Truth, pixels: FloatArra
         )
     u, v = pixels.astype(int).T
     depth = np.linalg.norm(reconstruction.points_at(reconstruction.rect.left.forward(pixels)), axis=-1)
-    error: FloatArray = np.abs(depth / truth.depth_left[v, u].astype(np.float64) - 1)
-    return error
+    return np.asarray(np.abs(depth / truth.depth_left[v, u] - 1), dtype=np.float64)
 
 
 def _share(mask: BoolArray) -> float:
