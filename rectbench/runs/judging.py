@@ -6,8 +6,9 @@ statement is held, wholly outside not held, else undecided, as it is on fewer th
 where as large a share of the rigs as claimed is reached, and not held where an exact binomial test refutes
 that share. A cell that failed keeps a statement from being held.
 
-Statements of one clause measure the same thing in several ways: where some are held and some are not, the
-clause depends. A claim is held where each of its clauses is, and not held where one of them is not.
+Statements of one clause measure the same thing in several ways: it is held where all of them are, depends where
+some are and some are not, and is not held where some are not and none is. A claim is held where each of its
+clauses is, and not held where one of them is not.
 """
 
 from __future__ import annotations
@@ -96,10 +97,12 @@ def _judged(claim: Claim, rows: Sequence[Result], columns: Collection[str]) -> J
 
 
 def _of_ways(verdicts: Collection[Verdict]) -> Verdict:
-    """Of ways to measure one thing."""
-    if {"held", "not held"} <= set(verdicts):
-        return "depends"
-    return next(iter(verdicts)) if len(set(verdicts)) == 1 else "undecided"
+    """Of ways to measure one thing: refuted where it is by some and held by none."""
+    if len(set(verdicts)) == 1:
+        return next(iter(verdicts))
+    if "not held" in verdicts:
+        return "depends" if "held" in verdicts else "not held"
+    return "undecided"
 
 
 def _of_clauses(verdicts: Collection[Verdict]) -> Verdict:
@@ -158,6 +161,8 @@ def _counted(statement: Statement, by_rig: Mapping[str, float]) -> _Judgement:
     as_few = float(binom.cdf(least, rigs, claimed))
     verdict: Verdict = "undecided"
     remark = f"as few if the claim were true: p = {as_few:.2g}"
+    if claimed == 1:
+        remark = f"claimed of all, not so on {rigs - least}"
     if as_few < LEVEL:
         verdict = "not held"
     elif rigs < needed:

@@ -127,6 +127,15 @@ def test_ways_to_measure_one_clause_that_disagree_make_it_depend() -> None:
     assert judge(HALVES, ratio(above=0.6), ratio(above=0.7)).verdict == "not held"
 
 
+def test_a_clause_that_some_way_refutes_and_none_holds_is_not_held() -> None:
+    ours = [[0.9], [1.1], [1.0]]
+    table = rows("ours", ours) + rows("theirs", np.ones((3, 1)))
+    cannot_say, refuted = ratio(below=1.0), ratio(below=0.5)
+    assert judge(table, cannot_say).verdict == "undecided"
+    assert judge(table, cannot_say, refuted).verdict == "not held"
+    assert judge(table, cannot_say, ratio(below=2.0)).verdict == "undecided"
+
+
 def test_a_way_that_cannot_say_leaves_the_clause_undecided_not_depending() -> None:
     elsewhere = ratio(below=0.6, metric="y")  # a column that the run does not have
     assert judge(HALVES, ratio(below=0.6), elsewhere).verdict == "undecided"
