@@ -8,6 +8,7 @@ from .api import render as render
 from .api import run as run
 from .applications.choose_method import Choice as Choice
 from .applications.choose_method import best_method as best_method
+from .calibrations import fisheye_rigs as fisheye_rigs
 from .calibrations import load_covariance as load_covariance
 from .calibrations import load_rig as load_rig
 from .calibrations import rig_names as rig_names

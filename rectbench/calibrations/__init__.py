@@ -1,5 +1,6 @@
 """The calibration files people have: read, recognised, assembled to rigs. Imports rigs and what is below."""
 
+from rectbench.calibrations.built_in_rigs import fisheye_rigs as fisheye_rigs
 from rectbench.calibrations.built_in_rigs import rig_names as rig_names
 from rectbench.calibrations.covariance_files import load_covariance as load_covariance
 from rectbench.calibrations.reading import load_rig as load_rig

@@ -21,6 +21,23 @@ def rig_names() -> tuple[str, ...]:
     return tuple(sorted(_files()))
 
 
+FISHEYE_DEG = 120.0
+"""Field of view from which on a lens is called fisheye: 60° from the axis a perspective image shows things
+four times as long as in the middle (1 / cos² 60°)."""
+
+
+def fisheye_rigs(least_fov_deg: float = FISHEYE_DEG) -> tuple[str, ...]:
+    """The names of the rigs that ship with rectbench and whose two lenses see that far, sorted.
+
+    >>> import rectbench as rb
+    >>> "t265" in rb.fisheye_rigs(), "bumblebee2" in rb.fisheye_rigs()
+    (True, False)
+    >>> "t265" in rb.fisheye_rigs(least_fov_deg=170)
+    False
+    """
+    return tuple(name for name in rig_names() if built_in_rig(name).fov_deg >= least_fov_deg)
+
+
 def built_in_rig(name: str) -> Rig:
     """The rig of that name. Raises UnknownName, with the nearest names, where there is none."""
     files = _files()

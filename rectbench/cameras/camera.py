@@ -22,6 +22,9 @@ from rectbench.formulas.domain import PIXEL_SLACK, RAY_SLACK
 from rectbench.formulas.protocol import Formulas
 from rectbench.types import BoolArray, Constants, FloatArray
 
+_RIM_POINTS, _HALVINGS = 33, 34
+"""On each side of an image, to find how far a lens sees; and steps from its centre to where it ends."""
+
 
 @dataclass(frozen=True, repr=False)
 class Camera(Projection):
@@ -105,6 +108,30 @@ class Camera(Projection):
         """Mask [...] of the rays [..., 3] that land on the image."""
         pixels, ok = self.project(rays)
         return ok & self.contains(pixels)
+
+    @property
+    def fov_deg(self) -> float:
+        """Field of view, degrees: twice the largest angle from the axis at which the image shows anything.
+
+        >>> import rectbench as rb
+        >>> round(rb.load_rig("bumblebee2").left.fov_deg), round(rb.load_rig("t265").left.fov_deg)
+        (87, 160)
+        """
+        (centre,), _ = self.project([[0.0, 0.0, 1.0]])
+        right, bottom = self.width - 0.5, self.height - 0.5
+        u, v = np.linspace(-0.5, right, _RIM_POINTS), np.linspace(-0.5, bottom, _RIM_POINTS)
+        sides = ((u, -0.5), (u, bottom), (-0.5, v), (right, v))
+        rim = np.concatenate([np.stack(np.broadcast_arrays(*side), axis=-1) for side in sides])
+        rays, ok = self.unproject(rim)
+        if not ok.all():  # the image circle ends before the rim does; its edge is found by halving
+            outer, inner = rim[~ok], np.broadcast_to(centre, rim[~ok].shape)
+            for _ in range(_HALVINGS):
+                middle = (outer + inner) / 2
+                seen = self.unproject(middle)[1][:, None]
+                outer, inner = np.where(seen, outer, middle), np.where(seen, middle, inner)
+            rays = np.concatenate([rays[ok], self.unproject(inner)[0]])
+        x, y, z = rays.T
+        return round(float(2 * np.degrees(np.arctan2(np.hypot(x, y), z).max())), 6)
 
     def pixel_grid(self) -> FloatArray:
         """The centres of all pixels, [height, width, 2]."""

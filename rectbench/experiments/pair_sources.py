@@ -1,4 +1,4 @@
-"""Where a report's pairs come from: they are rendered, or photographs found in a folder.
+"""Where the pairs of a report's parts come from: they are rendered, found in a folder, or lenses alone.
 
 What looks names and files up is imported where it is used, so that stating a report, and listing reports,
 loads none of it.
@@ -7,7 +7,7 @@ loads none of it.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Set
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
@@ -15,13 +15,26 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 from pydantic import BaseModel, ConfigDict, Field
 
 from rectbench.errors import InvalidInput
-from rectbench.pairs.spec import AS_CALIBRATED, PhotographedSpec, RenderedSpec
+from rectbench.pairs.spec import (
+    AS_CALIBRATED,
+    CALIBRATED,
+    ESTIMATED,
+    NO_SCENE,
+    LensSpec,
+    PhotographedSpec,
+    RenderedSpec,
+)
+from rectbench.plugins.matches import true_noise_px
 
 if TYPE_CHECKING:
     from rectbench.pairs.finding.photographs import Photographs
+    from rectbench.plugins.metric import Need
+
+NOTHING_DRAWN = 0
+"""The seed of cells for which no seed draws anything."""
 
 PairName = tuple[str, str, str]
-"""Scene, rig, motion."""
+"""Scene, rig, motion; the scene is NO_SCENE for lenses alone."""
 
 
 class Rendering(BaseModel):
@@ -49,15 +62,17 @@ class StatedPart:
     methods: tuple[str, ...]
     options: Mapping[str, tuple[dict[str, Any], ...]]
     """By method: the sets of options it runs with, each a row of its own."""
+    poses: tuple[str, ...]
+    matches: tuple[str, ...]
+    """Levels of the matches that those methods get which work from matches."""
     seeds: tuple[int, ...]
     metrics: tuple[str, ...]
     figures: tuple[str, ...] | None
     """None draws the usual ones."""
     rendering: Rendering
-    needs_images: bool
-    """Whether a pose or figure asks for images; metrics and methods may ask for them, too."""
+    needs_images: bool = False
+    """Whether anything asks for images; known once it is planned, as is the next."""
     needs_truth: bool = False
-    """Whether a metric or method asks for the truth."""
     is_open: bool = True
     """Whether methods added to a run join this part."""
     alone: bool = False
@@ -66,39 +81,88 @@ class StatedPart:
 
 @dataclass(frozen=True)
 class _Source:
-    parts: tuple[StatedPart, ...]
+    part: StatedPart
     found: Photographs | None = None
     """What is in the folder, for photographs once they are located."""
 
+    pairs_called: ClassVar[str]
+    """What errors call its pairs."""
+    offers: ClassVar[frozenset[Need]]
+    """What its pairs have beside their rig: metrics, figures and poses that need more are refused."""
+    true_matches: ClassVar[bool] = True
+    """Whether methods can be given true matches."""
     has_truth: ClassVar[bool] = True
-    """Whether anybody knows the truth about the pairs."""
+    """Whether anybody knows how the cameras truly stand."""
+    selects: ClassVar[tuple[Literal["scenes", "rigs"], ...]] = ("scenes", "rigs")
+    """Which of its names a run may select,"""
     takes_foreign_names: ClassVar[bool] = True
-    """Whether a run may have scenes and rigs that the report does not name."""
+    """and whether these may be others than the report's."""
     scene_word: ClassVar[str] = "scene"
     """What the first name of a pair is the name of."""
+
+    def located(self, report: str, data: str | Path | None) -> Self:
+        """The same; raises InvalidInput for a folder of photographs, which nobody needs."""
+        if data is not None:
+            raise InvalidInput(f"report {report} takes no photographs; expected no --data")
+        return self
+
+    def require_poses(self) -> None:
+        """Raise UnknownName for a level of pose that is none, InvalidInput for one its pairs cannot have."""
+        from rectbench.experiments.naming import require_known
+        from rectbench.rigs.poses import POSES
+
+        require_known("pose", self.part.poses, (*POSES, ESTIMATED))
+        if ESTIMATED in self.part.poses and "images" not in self.offers:
+            raise InvalidInput(f"pose estimated needs images, which {self.pairs_called} have not")
+
+    def match_levels(self, needs: Set[str]) -> tuple[str, ...]:
+        """The levels of matches that a method of these needs runs at: one without a name if it needs none."""
+        if "matches" not in needs:
+            return ("",)
+        from_images = "images" in self.offers
+        return tuple(
+            level
+            for level in self.part.matches
+            if (from_images if true_noise_px(level) is None else self.true_matches)
+        )
+
+    def lacks(self, needs: Set[str]) -> str:
+        """What is needed and its pairs have not, in words that end an error; empty where they have all."""
+        for need, called in (("truth", "the truth"), ("images", "images")):
+            if need in needs and need not in self.offers:
+                return f"{called}, which {self.pairs_called} have not"
+        if not self.match_levels(needs):
+            stated = ", ".join(self.part.matches)
+            return (
+                f"matches, and {self.pairs_called} have none of {stated}; expected true + 0.1 px, or the like"
+            )
+        return ""
+
+    def has_cell(self, part: StatedPart, seed: int, pose: str, matches: str) -> bool:
+        """Whether a part has a cell at these levels of pose and matches on a pair of this seed."""
+        return True
 
 
 class Rendered(_Source):
     """Pairs that are rendered, so that any rig can stand in any scene."""
 
-    def located(self, report: str, data: str | Path | None) -> Self:
-        """The same; raises InvalidInput for a folder of photographs, which nobody needs."""
-        if data is not None:
-            raise InvalidInput(f"report {report} renders its pairs; expected no --data")
-        return self
+    pairs_called = "rendered pairs"
+    offers = frozenset({"truth", "images"})
 
     def specs(self, part: StatedPart) -> Iterator[RenderedSpec]:
         """What is to be rendered for a part; raises UnknownName for a scene, rig or motion that is none."""
-        from rectbench.experiments.naming import plugins_named, require_known, rigs_named
+        from rectbench.experiments.naming import plugins_named
         from rectbench.plugins.scene import SCENES
-        from rectbench.rigs.motions import MOTIONS
 
         names = dict.fromkeys(scene for scene, _, _ in part.pairs)
         scenes = {name: plugins_named(SCENES, [name])[0] for name in names}
-        rigs = rigs_named(dict.fromkeys(rig for _, rig, _ in part.pairs))
-        require_known("motion", [motion for _, _, motion in part.pairs], MOTIONS)
+        rigs = _rigs_moved(part)
         for (scene, rig, motion), seed in itertools.product(part.pairs, part.seeds):
             plugin, scene_source = scenes[scene]
+            if plugin.name == NO_SCENE:
+                raise InvalidInput(
+                    f"{plugin.path}: scene {NO_SCENE} stands for no scene; expected another name"
+                )
             rig_name, rig_source = rigs[rig]
             yield RenderedSpec(
                 scene=plugin.name,
@@ -113,14 +177,52 @@ class Rendered(_Source):
             )
 
 
+class Lenses(_Source):
+    """Rigs and their motions without a scene: nothing is rendered."""
+
+    pairs_called = "lenses without a scene"
+    offers = frozenset()
+    selects = ("rigs",)
+
+    def specs(self, part: StatedPart) -> Iterator[LensSpec]:
+        """The pairs of a part; raises UnknownName for a rig or motion that is none."""
+        rigs = _rigs_moved(part)
+        seeds = dict.fromkeys((NOTHING_DRAWN, *part.seeds))
+        for (_, rig, motion), seed in itertools.product(part.pairs, seeds):
+            rig_name, rig_source = rigs[rig]
+            yield LensSpec(
+                rig=rig_name,
+                motion=motion,
+                seed=seed,
+                rig_source=rig_source,
+                image_width=part.rendering.image_width,
+            )
+
+    def has_cell(self, part: StatedPart, seed: int, pose: str, matches: str) -> bool:
+        """Where a seed draws nothing, one cell stands for those of all seeds, whatever they are."""
+        from rectbench.rigs.poses import POSES
+
+        is_drawn = POSES[pose] != POSES["exact"] or bool(true_noise_px(matches))
+        return seed in part.seeds if is_drawn else seed == NOTHING_DRAWN
+
+
 class Photographed(_Source):
     """Pairs of photographs, found in a folder that each run names."""
 
+    pairs_called = "photographs"
+    offers = frozenset({"images"})
+    true_matches = False
     has_truth = False
     takes_foreign_names = False
     scene_word = "pair"
 
-    def located(self, report: str, data: str | Path | None) -> Photographed:
+    def require_poses(self) -> None:
+        """Raise InvalidInput for a level that photographs cannot have."""
+        for pose in self.part.poses:
+            if pose not in (CALIBRATED, ESTIMATED):
+                raise InvalidInput(f"pose of photographs is {pose}; expected {CALIBRATED} or {ESTIMATED}")
+
+    def located(self, report: str, data: str | Path | None) -> Self:
         """The same with the pairs in the folder `data`; raises InvalidInput where there are none."""
         from rectbench.pairs.finding.photographs import find_photographs
 
@@ -128,7 +230,7 @@ class Photographed(_Source):
             raise InvalidInput(f"report {report} takes photographs; expected a folder of them, --data FOLDER")
         found = find_photographs(data)
         pairs = tuple((pair.name, pair.calibration.name, AS_CALIBRATED) for pair in found.pairs)
-        return Photographed(tuple(replace(part, pairs=pairs) for part in self.parts), found)
+        return replace(self, part=replace(self.part, pairs=pairs), found=found)
 
     def specs(self, part: StatedPart) -> Iterator[PhotographedSpec]:
         """The photographs of a part, which are what they are: nothing about them can be asked for."""
@@ -152,4 +254,13 @@ class Photographed(_Source):
             )
 
 
-PairSource = Rendered | Photographed
+PairSource = Rendered | Photographed | Lenses
+
+
+def _rigs_moved(part: StatedPart) -> dict[str, tuple[str, str]]:
+    """By what a part calls them: name and source of its rigs; its motions are looked up as well."""
+    from rectbench.experiments.naming import require_known, rigs_named
+    from rectbench.rigs.motions import MOTIONS
+
+    require_known("motion", [motion for _, _, motion in part.pairs], MOTIONS)
+    return rigs_named(dict.fromkeys(rig for _, rig, _ in part.pairs))

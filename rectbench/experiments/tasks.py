@@ -22,7 +22,7 @@ class CellTask(BaseModel):
     options: dict[str, Any]
     metrics: tuple[str, ...]
     match_count: int
-    match_noise_px: float
+    """How many true matches the method is given, where it is given such."""
     group: str = ""
     """The part of the report it belongs to."""
     alone: bool = False

@@ -1,4 +1,4 @@
-"""A pair: two images of a rig, and all that is known of them."""
+"""A pair: a rig, what it saw, and all that is known of both."""
 
 from __future__ import annotations
 
@@ -14,7 +14,8 @@ from rectbench.matching import BoardMatches, PoseEstimate, board_matches
 from rectbench.metrics.row_error import SCORED_MATCHES
 from rectbench.metrics.timing import warm_seconds
 from rectbench.pairs.estimating import estimate_inputs, estimate_pose, load_estimate, save_estimate
-from rectbench.pairs.spec import ESTIMATED, PhotographedSpec, RenderedSpec
+from rectbench.pairs.spec import ESTIMATED, PairSpec
+from rectbench.plugins.matches import true_noise_px
 from rectbench.rendering.truth import Truth
 from rectbench.rigs import Rig
 from rectbench.rigs.poses import POSES, perturb
@@ -29,13 +30,13 @@ NUMBERS, REASON = "pose.npz", "reason.json"
 
 @dataclass(frozen=True, eq=False)
 class Pair(ABC):
-    """Two images of a rig, rendered or photographed.
+    """A rig with two images of it, rendered or photographed, or with none.
 
     It is asked and answers: everything is found when it is first asked for, from the store where it is
     known, and kept for as long as the pair is.
     """
 
-    spec: RenderedSpec | PhotographedSpec
+    spec: PairSpec
     store: Store
     knows_truth: ClassVar[bool]
     """Whether anybody knows the truth about the pair."""
@@ -86,9 +87,21 @@ class Pair(ABC):
         Raises PoseNotFound where photographs tell no pose.
         """
 
+    def given_matches(self, level: str, count: int) -> Matches:
+        """What a method that works from matches is given at a level of them, see `match_level`.
+
+        Of the images those that their pose was found from, however many these are.
+        Raises PoseNotFound where the images tell no pose; InvalidInput for what the pair has not.
+        """
+        noise_px = true_noise_px(level)
+        return self.estimate.inliers if noise_px is None else self.noisy_matches(count, noise_px)
+
     @abstractmethod
-    def given_matches(self, pose: str, count: int, noise_px: float) -> Matches:
-        """What a method that works from matches is given under a level of `pose`."""
+    def noisy_matches(self, count: int, noise_px: float) -> Matches:
+        """True correspondences, up to `count`, with Gaussian noise of `noise_px` pixels on each coordinate.
+
+        Raises InvalidInput for photographs.
+        """
 
     @abstractmethod
     def require(self) -> None:

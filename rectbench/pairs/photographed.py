@@ -80,9 +80,9 @@ class PhotographedPair(Pair):
         """The calibrated rig as it is, or in the pose that the images tell."""
         return self.rig if pose == CALIBRATED else super().believed_rig(pose)
 
-    def given_matches(self, pose: str, count: int, noise_px: float) -> Matches:
-        """Those of the estimate, whatever pose the others are told: there are no true ones."""
-        return self.estimate.inliers
+    def noisy_matches(self, count: int, noise_px: float) -> Matches:
+        """Raises InvalidInput, as `truth` does."""
+        return Matches(*self.truth.matches(count, noise_px=noise_px))
 
     def require(self) -> None:
         """The images must be those of the calibration."""

@@ -16,7 +16,7 @@ from rectbench.matching import match_features
 from rectbench.matching.pose.consistent import SCORING_PIXELS
 from rectbench.pairs.pair import Pair
 from rectbench.pairs.rendering import IMAGES, TRUTH, TRUTH_FILE, Studio, placed, truth_inputs
-from rectbench.pairs.spec import ESTIMATED, RenderedSpec
+from rectbench.pairs.spec import RenderedSpec
 from rectbench.rendering.truth import Truth
 from rectbench.rigs import Rig
 from rectbench.store.keys import Inputs
@@ -80,10 +80,7 @@ class RenderedPair(Pair):
     def _features_by_estimate(self) -> Matches:
         return scored_features(self.images, self.estimate.rig(self.rig))
 
-    def given_matches(self, pose: str, count: int, noise_px: float) -> Matches:
-        """Those of the estimate where the pose is estimated, else true ones with noise."""
-        if pose == ESTIMATED:
-            return self.estimate.inliers
+    def noisy_matches(self, count: int, noise_px: float) -> Matches:
         return Matches(*self.truth.matches(count, seed=self.seed_of("matches"), noise_px=noise_px))
 
     def require(self) -> None:

@@ -9,6 +9,8 @@ from pydantic import BaseModel, ConfigDict, Field
 
 AS_CALIBRATED = "as-calibrated"
 """The motion of photographs: the rig is what it is."""
+NO_SCENE: Literal["none"] = "none"
+"""The scene of a pair of lenses, for which nothing is rendered."""
 
 
 class _Spec(BaseModel):
@@ -71,7 +73,17 @@ class PhotographedSpec(_Spec):
     """The two of files that hold more."""
 
 
-PairSpec = Annotated[RenderedSpec | PhotographedSpec, Field(discriminator="kind")]
+class LensSpec(_Spec):
+    """A rig and how its cameras stand, without a scene."""
+
+    kind: Literal["lenses"] = "lenses"
+    scene: Literal["none"] = NO_SCENE
+    rig_source: str
+    """The rig's name, or the absolute path of its file."""
+    image_width: int | None
+
+
+PairSpec = Annotated[RenderedSpec | PhotographedSpec | LensSpec, Field(discriminator="kind")]
 
 ESTIMATED = "estimated"
 """The pose that is estimated from the images themselves."""

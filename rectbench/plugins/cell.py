@@ -15,6 +15,8 @@ class Cell(BaseModel):
     rig: str
     motion: str
     pose: str
+    matches: str = ""
+    """The level of the matches that the method works from; empty where it needs none."""
     method: str
     options: str
     """The options given, as canonical JSON; "{}" where all are the method's own."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Set
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple
 
@@ -158,8 +158,11 @@ FIGURES: Kind[Figure] = Kind(
 )
 
 
-def usual_figures() -> tuple[str, ...]:
-    """The names of the figures that are drawn where a report asks for none, in their order."""
-    places = {plugin.name: plugin.value.usual for plugin in registry(FIGURES).plugins()}
-    usual = sorted((place, name) for name, place in places.items() if place is not None)
+def usual_figures(offered: Set[str] = frozenset({"images"})) -> tuple[str, ...]:
+    """The names of the figures that are drawn where a report asks for none, in their order.
+
+    Without those that need more of a pair than what is `offered`.
+    """
+    figures = [plugin.value for plugin in registry(FIGURES).plugins() if plugin.value.needs <= offered]
+    usual = sorted((figure.usual, figure.name) for figure in figures if figure.usual is not None)
     return tuple(name for _, name in usual)

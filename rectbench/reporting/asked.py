@@ -14,7 +14,8 @@ def wanted_figures(part: Run) -> dict[str, Plugin[Figure] | RectbenchError]:
     """The figures of a part by the names that ask for them, or why one cannot be loaded here."""
     stated, spec = part.stated_part, part.record.spec
     asked = spec.figures if stated is None else stated.figures
-    return {name: _loaded(name) for name in (usual_figures() if asked is None else asked)}
+    usual = usual_figures() if part.pair_source is None else usual_figures(part.pair_source.offers)
+    return {name: _loaded(name) for name in (usual if asked is None else asked)}
 
 
 def _loaded(name: str) -> Plugin[Figure] | RectbenchError:

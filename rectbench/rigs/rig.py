@@ -113,6 +113,16 @@ class Rig:
         cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
         return cross @ self.R_right_left
 
+    @property
+    def fov_deg(self) -> float:
+        """Field of view of the narrower lens, degrees, see `Camera.fov_deg`.
+
+        >>> import rectbench as rb
+        >>> round(rb.load_rig("tumvi").fov_deg)
+        195
+        """
+        return min(self.left.fov_deg, self.right.fov_deg)
+
     def right_from_left(self, points_left: ArrayLike) -> FloatArray:
         """Points [..., 3] of the left camera's frame in the right camera's, metres.
 

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+from rectbench.plugins.matches import marked
 from rectbench.runs.gating import KEY
 from rectbench.runs.record import LEADING, TEXTS
 from rectbench.runs.run import read_run
@@ -36,6 +37,7 @@ def compare(a: Path, b: Path) -> Comparison:
     both = read_run(a).table.merge(
         read_run(b).table, on=KEY, how="outer", suffixes=("_a", "_b"), indicator=True
     )
+    both["method"] = list(map(marked, both["method"], both["matches"]))
     ok = (both["status_a"] == "ok") & (both["status_b"] == "ok")
     unpaired = tuple(_why_unpaired(row) for _, row in both[~ok].iterrows() if _differs(row))
     metrics = [

@@ -17,6 +17,7 @@ from rectbench.errors import InvalidInput, UnknownName
 from rectbench.experiments.spec import REPORTS
 from rectbench.pairs.spec import ESTIMATED
 from rectbench.plugins.cell import IDENTITY, Cell
+from rectbench.plugins.matches import marked
 from rectbench.plugins.metric import Column
 from rectbench.plugins.result import Result
 from rectbench.registry import registry
@@ -138,7 +139,9 @@ def _read_accepted(path: Path) -> pd.DataFrame:
     except (OSError, ValueError) as error:
         raise InvalidInput(f"{path} cannot be read: {' '.join(str(error).split())}") from None
     if missing := [name for name in texts if name not in table]:
-        raise InvalidInput(f"{path} lacks the column {missing[0]}")
+        raise InvalidInput(
+            f"{path} lacks the column {missing[0]}; `rectbench gate RUN --accept` makes it anew"
+        )
     return table.assign(report="")
 
 
@@ -148,6 +151,6 @@ def _by_cell(rows: Iterable[Result]) -> dict[Cell, Result]:
 
 
 def _name(row: Result) -> str:
-    variant = ",".join(f"{k}={v}" for k, v in row.options.items())
+    variant = [f"{name}={value}" for name, value in row.options.items()]
     place = f"{row.scene}/{row.rig}/{row.motion}/{row.pose}/seed {row.seed}"
-    return f"{row.cell.method}{variant and ' '}{variant} on {place}"
+    return f"{marked(row.cell.method, row.cell.matches, *variant)} on {place}"

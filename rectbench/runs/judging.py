@@ -6,9 +6,9 @@ statement is held, wholly outside not held, else undecided, as it is on fewer th
 where as large a share of the rigs as claimed is reached, and not held where an exact binomial test refutes
 that share. A cell that failed keeps a statement from being held.
 
-Statements of one clause measure the same thing in several ways: it is held where all of them are, depends where
-some are and some are not, and is not held where some are not and none is. A claim is held where each of its
-clauses is, and not held where one of them is not.
+Statements of one clause measure the same thing in several ways: it is held where all of them are, depends
+where some are and some are not, and is not held where some are not and none is. A claim is held where each of
+its clauses is, and not held where one of them is not.
 """
 
 from __future__ import annotations

@@ -10,7 +10,8 @@ from typing import Any
 import pandas as pd
 
 from rectbench.experiments.execution.running import checked_jobs, execute
-from rectbench.experiments.planning import Selection, find_report, make_plan
+from rectbench.experiments.planning import find_report, make_plan
+from rectbench.experiments.selecting import Selection
 from rectbench.experiments.spec import Report
 from rectbench.progress import progress_for
 from rectbench.registry import is_path

@@ -14,7 +14,8 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 from rectbench.errors import InvalidInput
 from rectbench.experiments.execution.outcomes import Outcome
 from rectbench.experiments.execution.running import Execution
-from rectbench.experiments.planning import Plan, Selection
+from rectbench.experiments.planning import Plan
+from rectbench.experiments.selecting import Selection
 from rectbench.experiments.spec import Report
 from rectbench.experiments.tasks import CellTask
 from rectbench.metrics.scoring import metrics_of
@@ -28,7 +29,7 @@ from rectbench.store.keys import canonical_json
 from rectbench.writing import write_atomically
 
 RUN_FILE, PARQUET, CSV = "run.json", "results.parquet", "results.csv"
-VERSION: Literal[2] = 2
+VERSION: Literal[3] = 3
 """Of the layout of run.json."""
 LEADING = (*IDENTITY, "status", "reason")
 TEXTS = ("group", "notes")
@@ -89,7 +90,7 @@ class FoundPhotographs(_Frozen):
 class RunRecord(Machine):
     """All that run.json says: what was to be run, what it ran on, and what it took."""
 
-    version: Literal[2]
+    version: Literal[3]
     report: str
     report_file: str | None
     """The absolute path of the report's file, where it was given as one."""

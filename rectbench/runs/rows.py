@@ -14,6 +14,7 @@ from pydantic import ConfigDict, Field, Json, ValidationError, field_validator
 from rectbench.errors import InvalidInput
 from rectbench.experiments.execution.outcomes import Status
 from rectbench.plugins.cell import IDENTITY, Cell
+from rectbench.plugins.matches import marked
 from rectbench.plugins.result import Result, distinct
 from rectbench.runs.record import first_fault
 
@@ -63,7 +64,7 @@ def read_rows(table: Iterable[Mapping[Any, Any]], path: Path) -> tuple[Result, .
     return tuple(
         Result(
             cell=row.cell,
-            method=labels[row.group][row.method, row.options],
+            method=labels[row.group][_variant(row)],
             options=json.loads(row.options),
             metrics=row.model_extra or {},
             **row.model_dump(include=_ALIKE),
@@ -76,16 +77,24 @@ def _is_empty(value: Any) -> bool:
     return bool(pd.api.types.is_scalar(value) and pd.isna(value))
 
 
-def _method_labels(rows: Iterable[_StoredRow]) -> dict[tuple[str, str], str]:
-    """A name for each (method, options): the method's own unless the rows have several variants of it."""
-    variants = distinct((row.method, row.options) for row in rows)
-    count = Counter(method for method, _ in variants)
+_Variant = tuple[str, str, str]
+"""Method, options, matches."""
+
+
+def _variant(row: Cell) -> _Variant:
+    return row.method, row.options, row.matches
+
+
+def _method_labels(rows: Iterable[Cell]) -> dict[_Variant, str]:
+    """A name for each variant: the method's own, with its options if these differ, true matches always."""
+    variants = distinct(map(_variant, rows))
+    count = Counter(method for method, _ in distinct(variant[:2] for variant in variants))
     return {
-        (method, options): method if count[method] == 1 else f"{method} {_options_text(options)}"
-        for method, options in variants
+        (method, options, level): marked(method, level, *[_options_text(options)] * (count[method] > 1))
+        for method, options, level in variants
     }
 
 
 def _options_text(options: str) -> str:
     given = json.loads(options)
-    return "(" + (", ".join(f"{name}={value}" for name, value in sorted(given.items())) or "default") + ")"
+    return ", ".join(f"{name}={value}" for name, value in sorted(given.items())) or "default"

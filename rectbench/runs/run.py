@@ -9,7 +9,7 @@ from pathlib import Path
 import pandas as pd
 
 from rectbench.errors import InvalidInput
-from rectbench.experiments.pair_sources import StatedPart
+from rectbench.experiments.pair_sources import PairSource, StatedPart
 from rectbench.plugins.catalogue import known
 from rectbench.plugins.result import Part, Result, distinct
 from rectbench.runs.record import LEADING, PARQUET, RunRecord, read_record
@@ -28,9 +28,14 @@ class Run(Part):
     table: pd.DataFrame
 
     @property
+    def pair_source(self) -> PairSource | None:
+        """Where the pairs of this part come from; None of a run of several, and of a part that is new."""
+        return next((one for one in self.record.spec.sources if one.part.name == self.group), None)
+
+    @property
     def stated_part(self) -> StatedPart | None:
-        """What the report states of this part; None of a whole run of several, and of a part that is new."""
-        return next((part for part in self.record.spec.parts if part.name == self.group), None)
+        """What the report states of this part; None as above."""
+        return None if self.pair_source is None else self.pair_source.part
 
     @property
     def parts(self) -> tuple[Run, ...]:
@@ -71,6 +76,6 @@ def read_run(folder: Path) -> Run:
         table=table,
         results=read_rows(table.to_dict("records"), path),
         catalogue=known().joined(record.columns),
-        has_truth=spec.pair_source.has_truth,
+        has_truth=all(source.has_truth for source in spec.sources),
         stated_seconds={str(stage): seconds for stage, seconds in spec.stated_seconds.items()},
     )

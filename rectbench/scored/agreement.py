@@ -8,6 +8,7 @@ was made for these.
 from __future__ import annotations
 
 import hashlib
+import math
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -19,7 +20,7 @@ from rectbench.types import BoolArray, FloatArray
 from rectbench.warps.jacobians import entries, log_distortion_parts
 from rectbench.warps.lookup.resampling import SIDES, Side
 from rectbench.warps.lookup.tables import OUTSIDE, FloatMap
-from rectbench.warps.rectification import Rectification, in_frame
+from rectbench.warps.rectification import LARGEST_SIDE_PX, Rectification, in_frame
 from rectbench.warps.warp import Warp
 
 PLACES = 1_500
@@ -28,7 +29,9 @@ TABLE_PX = 0.01
 """A table's entry is this near to the inverse map; float32 keeps 0.001 px of the largest image."""
 CLOSURE_PX = 1e-3
 """inverse(forward(x)) is this near to x."""
-DERIVATIVE_SHARE, DERIVATIVE_ARM_PX = 1e-3, 5e-3
+LARGEST_TABLE = 4.0
+"""Entries of a table that is made for this alone, in pixels of the source image."""
+DERIVATIVE_SHARE, DERIVATIVE_ARM_PX = 5e-3, 5e-3
 """The stated derivative is this near to differences over so short an arm, by the largest entry there."""
 DISTORTION_SHARE, DISTORTION_FLOOR = 0.01, 2e-3
 """The tables' log distortion is this near to the scored pixels', of which it is an independent sample."""
@@ -39,10 +42,32 @@ def check_agreement(rect: Rectification, delivered: Delivered) -> None:
 
     Raised too where a side's map is mirrored or folded (det J ≤ 0) anywhere in the frame.
     """
-    tables = {side: rect.maps(side) for side in SIDES}
+    fine = _at_least_as_fine(rect, delivered)
+    tables = {side: fine.maps(side) for side in SIDES}
     rng = np.random.default_rng(_seed(tables))
     for side in SIDES:
-        _check_side(side, rect, delivered.side(side), tables[side], rng)
+        places = _places(side, fine.warp(side), fine.size, delivered.side(side), rng)
+        _check_unfolded(delivered.side(side), places)
+        _check_inverse(fine.warp(side), places)
+        _check_jacobian(fine.warp(side), places)
+        _check_table(fine.warp(side), places, tables[side])
+        _check_distortion(places, delivered.side(side), tables[side])
+    if fine is not rect:
+        for side in SIDES:
+            places = _places(side, rect.warp(side), rect.size, delivered.side(side), rng)
+            _check_table(rect.warp(side), places, rect.maps(side))
+
+
+def _at_least_as_fine(rect: Rectification, delivered: Delivered) -> Rectification:
+    """The images at the source's resolution where they are coarser: small tables smooth what they hold."""
+    determinants = np.abs(_determinants(delivered.shown.both))
+    shrunk = float(np.median(determinants)) if len(determinants) else 1.0
+    most = LARGEST_TABLE * math.prod(rect.left.source.size) / math.prod(rect.size)
+    scale = math.sqrt(min(1 / shrunk, most)) if shrunk > 0 else 1.0
+    if scale <= 1:
+        return rect
+    width, height = (min(LARGEST_SIDE_PX, round(scale * side)) for side in rect.size)
+    return rect.windowed((-0.5, -0.5), rect.size, (width, height))
 
 
 def _seed(tables: dict[Side, tuple[FloatMap, FloatMap]]) -> int:
@@ -57,7 +82,7 @@ def _seed(tables: dict[Side, tuple[FloatMap, FloatMap]]) -> int:
 class _Places:
     """Places in the frame, and what the map says of them."""
 
-    method_side: Side
+    side: Side
     chosen: NDArray[np.intp] = field(repr=False)
     """[K], numbers of the scored pixels in whose cells they lie."""
     pixels: FloatArray = field(repr=False)
@@ -72,30 +97,9 @@ class _Places:
         if not true.all():
             u, v = self.pixels[int(true.argmin())]
             raise InvalidResult(
-                f"{what}, near pixel ({u:.0f}, {v:.0f}) of the {self.method_side} source image and at "
+                f"{what}, near pixel ({u:.0f}, {v:.0f}) of the {self.side} source image and at "
                 f"{1 - true.mean():.1%} of the places looked at"
             )
-
-
-def _check_side(
-    side: Side,
-    rect: Rectification,
-    delivered: DeliveredSide,
-    table: tuple[FloatMap, FloatMap],
-    rng: np.random.Generator,
-) -> None:
-    warp = rect.warp(side)
-    places = _places(side, warp, rect.size, delivered, rng)
-    shown = np.flatnonzero(delivered.shown)
-    scored = _Places(
-        side, shown, delivered.scored.pixels[shown], delivered.px_rect[shown], delivered.jacobians[shown]
-    )
-    for where in (scored, places):
-        where.require(_determinants(where.by_differences) > 0, "the map is folded or mirrored (det J ≤ 0)")
-    _check_inverse(warp, places)
-    _check_jacobian(warp, places)
-    _check_table(warp, places, table)
-    _check_distortion(side, places, delivered, table)
 
 
 def _places(
@@ -109,6 +113,14 @@ def _places(
     px_rect, jacobians = differences(warp, pixels, DERIVATIVE_ARM_PX)
     there = in_frame(px_rect, size) & np.isfinite(jacobians).all(axis=(1, 2))
     return _Places(side, chosen[there], pixels[there], px_rect[there], jacobians[there])
+
+
+def _check_unfolded(delivered: DeliveredSide, places: _Places) -> None:
+    shown = np.flatnonzero(delivered.shown)
+    px_rect, jacobians = delivered.px_rect[shown], delivered.jacobians[shown]
+    scored = _Places(places.side, shown, delivered.scored.pixels[shown], px_rect, jacobians)
+    for where in (scored, places):
+        where.require(_determinants(where.by_differences) > 0, "the map is folded or mirrored (det J ≤ 0)")
 
 
 def _check_inverse(warp: Warp, places: _Places) -> None:
@@ -133,11 +145,12 @@ def _check_table(warp: Warp, places: _Places, table: tuple[FloatMap, FloatMap]) 
     places.require(near, "the lookup table is not the inverse map")
 
 
-def _check_distortion(
-    side: Side, places: _Places, delivered: DeliveredSide, table: tuple[FloatMap, FloatMap]
-) -> None:
+def _check_distortion(places: _Places, delivered: DeliveredSide, table: tuple[FloatMap, FloatMap]) -> None:
     """The tables' own distortion, by differences between entries two apart, against the scored pixels'."""
-    columns, rows = _nearest(places.px_rect, table[0].shape, margin=1)
+    height, width = table[0].shape
+    columns, rows = np.rint(places.px_rect).astype(np.intp).T
+    inner = (columns > 0) & (columns < width - 1) & (rows > 0) & (rows < height - 1)
+    columns, rows, chosen = columns[inner], rows[inner], places.chosen[inner]
     neighbours = [
         np.stack([layer[rows + down, columns + across] for layer in table], axis=-1).astype(float)
         for across, down in ((-1, 0), (1, 0), (0, -1), (0, 1))
@@ -150,23 +163,19 @@ def _check_distortion(
     if not len(inverses):
         return
     of_table, *_ = log_distortion_parts(np.linalg.inv(inverses).astype(np.float64))
-    of_scored, *_ = log_distortion_parts(delivered.jacobians[places.chosen[known]])
+    of_scored, *_ = log_distortion_parts(delivered.jacobians[chosen[known]])
     if abs(of_table - of_scored) > DISTORTION_SHARE * of_table + DISTORTION_FLOOR:
         raise InvalidResult(
-            f"the {side} lookup table has a log distortion of {of_table:.4g}, and the scored pixels beside "
-            f"its entries {of_scored:.4g}: the map is another one there"
+            f"the {places.side} lookup table has a log distortion of {of_table:.4g}, and the scored pixels "
+            f"beside its entries {of_scored:.4g}: the map is another one there"
         )
 
 
-def _nearest(
-    px_rect: FloatArray, shape: tuple[int, ...], margin: int = 0
-) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Columns and rows of the entries nearest to rectified pixels, `margin` entries from the edge."""
+def _nearest(px_rect: FloatArray, shape: tuple[int, ...]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Columns and rows of the entries nearest to rectified pixels in the frame."""
     height, width = shape
-    whole = np.rint(px_rect).astype(np.intp)
-    columns = np.clip(whole[:, 0], min(margin, width - 1), max(0, width - 1 - margin))
-    rows = np.clip(whole[:, 1], min(margin, height - 1), max(0, height - 1 - margin))
-    return columns, rows
+    columns, rows = np.rint(px_rect).astype(np.intp).T
+    return np.clip(columns, 0, width - 1), np.clip(rows, 0, height - 1)
 
 
 def _determinants(J: FloatArray) -> FloatArray:

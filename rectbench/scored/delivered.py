@@ -53,7 +53,7 @@ class Delivered:
     >>> import rectbench as rb
     >>> rig = rb.load_rig("t265")
     >>> found = rb.Delivered.of(rb.rectify(rig, method="conventional"), rb.ScoredView.of(rig))
-    >>> found.keeps(0.5), found.keeps(0.95)
+    >>> found.keeps(0.4), found.keeps(0.95)
     (True, False)
     """
 

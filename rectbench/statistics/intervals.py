@@ -122,7 +122,9 @@ def margins(values: FloatArray, level: float = 0.95) -> FloatArray:
     units = values.shape[-1]
     if units < LEAST_UNITS:
         return np.full(values.shape[:-1], math.nan)
-    with np.errstate(invalid="ignore"):  # infinite values have no spread
+    with np.errstate(
+        invalid="ignore", over="ignore"
+    ):  # infinite values have no spread, huge ones an infinite one
         spread = np.std(values, axis=-1, ddof=1)
     margin: FloatArray = stdtrit(units - 1, (1 + level) / 2) * spread / math.sqrt(units)
     return margin

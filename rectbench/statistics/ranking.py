@@ -19,6 +19,7 @@ Unit = TypeVar("Unit", bound=Hashable)
 
 LEAST_SIGNED_RANK_UNITS = 6
 """With five units the least two-sided p of a signed-rank test is 2 / 2**5 = 0.0625."""
+NO_SIGNED_RANK = f"below {LEAST_SIGNED_RANK_UNITS} no signed-rank test reaches 0.05"
 
 
 @dataclass(frozen=True)
@@ -91,8 +92,7 @@ def signed_rank_caveat(units: int, unit: str = "unit") -> str:
     """
     if not LEAST_UNITS <= units < LEAST_SIGNED_RANK_UNITS:
         return ""
-    below = f"below {LEAST_SIGNED_RANK_UNITS} no signed-rank test reaches 0.05"
-    return f"{counted(units, unit)}: {below}; ranks rest on t tests of log ratios, taken for normal"
+    return f"{counted(units, unit)}: {NO_SIGNED_RANK}; ranks rest on t tests of log ratios, taken for normal"
 
 
 def _why_none(order: list[str], ranked: list[str], units: int, unit: str) -> str:

@@ -9,7 +9,8 @@ import pytest
 from pydantic import ValidationError
 
 import rectbench as rb
-from rectbench.experiments.planning import Plan, Selection, make_plan
+from rectbench.experiments.planning import Plan, make_plan
+from rectbench.experiments.selecting import Selection
 from rectbench.metrics.scoring import metrics_of
 from rectbench.runs.making import run
 from tests.experiments.fakes import write_method, write_scene
@@ -106,7 +107,7 @@ def test_pairs_that_are_stated_are_a_grid_with_holes() -> None:
             {"groups": (), "pairs": FISHEYE.pairs, "methods": ("abraham",), "rigs": ("t265",)},
             "rigs stand beside pairs",
         ),
-        ({"groups": ()}, "scenes are missing"),
+        ({"groups": ()}, "rigs are missing"),
     ],
 )
 def test_a_report_is_one_grid_or_groups(fields: dict[str, Any], message: str) -> None:

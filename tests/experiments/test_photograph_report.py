@@ -181,7 +181,7 @@ def test_the_gate_needs_a_path_and_then_holds_the_run_to_it(
 def test_data_and_report_have_to_fit(tmp_path: Path, folder: Path, shell: Shell) -> None:
     for words, said in (
         (("run", "real"), "report real takes photographs; expected a folder of them, --data FOLDER"),
-        (("run", "quick", "--data", folder), "report quick renders its pairs; expected no --data"),
+        (("run", "quick", "--data", folder), "report quick takes no photographs; expected no --data"),
         (("run", "real", "--data", tmp_path / "gone"), "no such folder"),
         (("run", "real", "--data", folder, "--scenes", "attic"), "unknown scene 'attic'"),
     ):

@@ -8,7 +8,8 @@ import pytest
 
 import rectbench as rb
 from rectbench.experiments.execution.cells import cell_inputs
-from rectbench.experiments.planning import Selection, find_report, make_plan
+from rectbench.experiments.planning import find_report, make_plan
+from rectbench.experiments.selecting import Selection
 from rectbench.experiments.tasks import CellTask
 from rectbench.pairs.opening import open_pair
 from rectbench.store.keys import digest
@@ -16,10 +17,13 @@ from rectbench.store.store import Store
 from tests.experiments.fakes import small_report, write_method, write_scene
 
 
-def test_quick_is_four_scenes_three_rigs_two_poses_five_methods() -> None:
+def test_quick_is_all_fisheye_lenses_and_four_scenes_on_three_rigs_under_two_poses() -> None:
     plan = make_plan(find_report("quick"))
-    assert len(plan.tasks) == 4 * 3 * 2 * 5
-    assert len(plan.pairs) == 12
+    by_group = {group: [t for t in plan.tasks if t.group == group] for group in ("lenses", "pairs")}
+    assert len(by_group["lenses"]) == len(rb.fisheye_rigs()) * 4 * 5
+    assert len(by_group["pairs"]) == 4 * 3 * 2 * 5
+    assert len(plan.tasks) == sum(map(len, by_group.values()))
+    assert len({task.pair for task in by_group["pairs"]}) == 12
     assert plan.is_whole
     first, second = plan.tasks[0].cell, plan.tasks[1].cell
     assert (first.scene, first.rig, first.pose) == (second.scene, second.rig, second.pose)
@@ -130,8 +134,6 @@ def test_all_that_shapes_a_cell_shapes_its_key(tmp_path: Path, monkeypatch: pyte
         {"metrics": ("geometry",)},
         {"metrics": ("distortion",)},
         {"metrics": ("distortion", "timing")},
-        {"match_count": 999},
-        {"match_noise_px": 0.1},
     ]
     keys = [_key(**{**base, **variant}) for variant in ({}, *variants)]
     write_scene(tmp_path, "wall", "x = 1")
@@ -184,7 +186,9 @@ def test_only_what_is_asked_for_is_rendered() -> None:
 
     assert pair() == (False, False)
     assert pair(metrics=("geometry", "row_error")) == (True, False)
-    assert pair(methods=("hartley",)) == (True, False)
+    assert pair(methods=("hartley",)) == (False, True)
+    assert pair(methods=("hartley",), matches=("true + 0.1 px",)) == (True, False)
+    assert pair(methods=("hartley",), matches=("images", "true")) == (True, True)
     assert pair(figures=("pairs",)) == (False, True)
     assert pair(figures=None) == (False, True)
     assert pair(metrics=("row_error_features",)) == (False, True)

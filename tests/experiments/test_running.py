@@ -134,7 +134,7 @@ def report_of_four(tmp_path_factory: pytest.TempPathFactory) -> rb.Report:
         poses=("perturbed",),
         methods=("hartley", "abraham"),
         metrics=("geometry", "row_error", "row_error_features"),
-        match_noise_px=0.5,
+        matches=("true + 0.5 px",),
     )
 
 
@@ -152,8 +152,8 @@ def test_a_run_folder_holds_the_rows_and_the_plan(report_of_four: rb.Report, tmp
     pd.testing.assert_frame_equal(read_run(tmp_path / "run").table, table)
     written = pd.read_csv(tmp_path / "run" / "results.csv")
     assert list(written.columns) == list(table.columns)
-    identity = ["report", "scene", "rig", "motion", "pose", "method", "options", "seed"]
-    assert list(table.columns[:10]) == [*identity, "status", "reason"]
+    identity = ["report", "scene", "rig", "motion", "pose", "matches", "method", "options", "seed"]
+    assert list(table.columns[:11]) == [*identity, "status", "reason"]
     assert set(known().promised) <= set(table.columns)
     facts = json.loads((tmp_path / "run" / "run.json").read_text())
     assert facts["report"] == "small"

@@ -77,7 +77,7 @@ def test_photographs_know_no_truth_and_believe_their_calibration(photographed: P
         _ = photographed.truth
     assert photographed.believed_rig(CALIBRATED) is photographed.rig
     assert photographed.believed_rig(ESTIMATED) == photographed.estimate.rig(photographed.rig)
-    assert photographed.given_matches(CALIBRATED, 100, 0.1) is photographed.estimate.inliers
+    assert photographed.given_matches("images", 100) is photographed.estimate.inliers
 
 
 def test_photographs_of_another_size_than_their_calibration_are_refused(

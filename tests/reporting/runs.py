@@ -12,7 +12,7 @@ import numpy as np
 import pandas as pd
 
 from rectbench.cameras import Camera
-from rectbench.experiments.planning import Selection
+from rectbench.experiments.selecting import Selection
 from rectbench.experiments.spec import Report
 from rectbench.images.stereo_pair import StereoPair
 from rectbench.metrics import distortion
@@ -49,6 +49,7 @@ def make_row(scene: str, rig: str, pose: str, method: str, seed: int = 0, **chan
         "rig": rig,
         "motion": "as-calibrated",
         "pose": pose,
+        "matches": "images" if method in ("hartley", "fusiello") else "",
         "method": method,
         "options": "{}",
         "seed": seed,

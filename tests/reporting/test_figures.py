@@ -138,11 +138,12 @@ def test_a_figure_s_path_holds_from_any_folder(monkeypatch: pytest.MonkeyPatch, 
 
 
 def test_a_report_that_asks_for_none_gets_the_usual_ones() -> None:
-    assert usual_figures() == ("bars", "scatter", "pairs", "maps")
+    assert usual_figures() == ("bars", "scatter", "critical-difference", "pairs", "maps")
 
 
 def test_each_built_in_figure_lies_in_a_file_of_its_name() -> None:
     found = registry(FIGURES)
     assert not found.broken
-    assert {plugin.name: plugin.path.stem for plugin in found.plugins()} == {n: n for n in found.names()}
+    stems = {plugin.name: plugin.path.stem for plugin in found.plugins()}
+    assert stems == {name: name.replace("-", "_") for name in found.names()}
     assert all(isinstance(plugin.value, rb.Figure) and plugin.summary for plugin in found.plugins())

@@ -73,9 +73,9 @@ def test_a_key_that_is_missing_or_of_another_type_is_named(folder: Path, key: st
     ("change", "said"),
     [
         ({"extra": 1}, "extra is 1; Extra inputs are not permitted"),
-        ({"version": 3}, "version is 3; expected 2"),
+        ({"version": 2}, "version is 2; expected 3"),
         ({"spec": {**STORED["spec"], "spp": 0}}, "spec.spp is 0; expected greater than or equal to 1"),
-        ({"spec": {**STORED["spec"], "scenes": []}}, "scenes are missing"),
+        ({"spec": {**STORED["spec"], "rigs": []}}, "rigs are missing"),
         ({"cells": [{**STORED["cells"][0], "group": 3}]}, "cells.0.group is 3; expected a valid string"),
     ],
 )
@@ -88,7 +88,7 @@ def test_a_fault_is_told_with_its_key_its_value_and_what_was_expected(
 
 def test_a_run_of_before_there_were_versions_says_so(folder: Path) -> None:
     (folder / RUN_FILE).write_text(json.dumps({k: v for k, v in STORED.items() if k != "version"}))
-    assert "as before there were versions; expected 2" in refusal(folder)
+    assert "as before there were versions; expected 3" in refusal(folder)
 
 
 @pytest.mark.parametrize("text", ["", "{", "[]", "3", "null", "[" * 100_000, '{"version": NaN}', "\xff"])

@@ -16,6 +16,7 @@ from rectbench.pairs.rendered import RenderedPair
 from rectbench.pairs.rendering import Studio, give_memory_back
 from rectbench.pairs.spec import ESTIMATED, PairSpec, RenderedSpec
 from rectbench.plugins.fitting import check_result, checked_options
+from rectbench.plugins.matches import FROM_IMAGES, true_noise_px
 from rectbench.plugins.metric import Case
 from rectbench.plugins.rectifier import METHODS, Problem, pose_problem
 from rectbench.registry import registry
@@ -64,8 +65,8 @@ def cell_inputs(task: CellTask, pair: Pair) -> Inputs:
         "method_source": method.digest,
         "options": checked_options(method, task.options).model_dump(mode="json"),
         "metrics": digests_of(task.metrics),
-        "match_count": task.match_count,
-        "match_noise_px": task.match_noise_px,
+        "matches": task.cell.matches,
+        "match_count": task.match_count if true_noise_px(task.cell.matches) is not None else None,
         "code": code_digest(__name__),
         "versions": dict(versions(*MEASURING_PACKAGES)),
     }
@@ -74,8 +75,9 @@ def cell_inputs(task: CellTask, pair: Pair) -> Inputs:
 def uses_images(task: CellTask, pair: Pair) -> bool:
     """Whether the row of a cell depends on its images, as that of photographs always does."""
     needs = registry(METHODS).get(task.method_source).value.needs
-    asked = "images" in needs | needs_of(task.metrics) or task.cell.pose == ESTIMATED
-    return asked or not pair.knows_truth
+    asked = "images" in needs | needs_of(task.metrics)
+    told = task.cell.pose == ESTIMATED or task.cell.matches == FROM_IMAGES
+    return asked or told or not pair.knows_truth
 
 
 def stored_outcome(task: CellTask, pair: Pair) -> Outcome | None:
@@ -119,12 +121,9 @@ def run_pair(spec: RenderedSpec, store_root: Path) -> Outcome:
 def problem_of(task: CellTask, pair: Pair) -> Problem:
     """What the cell's rectifier may know."""
     cell, needs = task.cell, registry(METHODS).get(task.method_source).value.needs
-    matches = (
-        pair.given_matches(cell.pose, task.match_count, task.match_noise_px) if "matches" in needs else None
-    )
     return pose_problem(
         pair.believed_rig(cell.pose),
-        matches=matches,
+        matches=pair.given_matches(cell.matches, task.match_count) if cell.matches else None,
         images=Images(pair.images.left, pair.images.right) if "images" in needs else None,
         seed=pair.seed_of("method", cell.pose, cell.method),
     )

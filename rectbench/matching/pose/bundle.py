@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from scipy.special import chdtri, fdtri
 
 from rectbench.cameras import Camera
 from rectbench.matching.pose.epipolar import Pose, RayMatches, tangents, triangulated
@@ -22,8 +23,15 @@ SETTLED = 1e-8
 """Largest step, rad, after which nothing is gained."""
 DAMPING = 1e-9
 """Share of the diagonal that is added: the distance of a point at the epipole is free."""
-SOFT = 1.5
-"""Deviations at which a match has half its weight (Cauchy)."""
+SOFT = 2.385
+"""Deviations at which a match has half its weight (Cauchy); of normal errors nothing but 5 % is lost."""
+PARAMETERS = 5
+"""Of a pose. A point takes three of its match's four numbers: one is left."""
+WORTH = 0.65
+"""What a match adds to the degrees of freedom of the noise. A normal one would add 1 to its mean square;
+the loss makes it worth 0.69, that of Student's t of 3 degrees 0.58."""
+COVERED = 0.95
+"""Confidence of the region that holds as many poses, of however few matches."""
 NEAREST = 0.1
 """Distance, baselines, from which a point starts at the nearest."""
 
@@ -45,8 +53,7 @@ def adjusted(left: Camera, right: Camera, pose: Pose, matches: RayMatches) -> Ad
     """Gauss-Newton on the reprojection errors of all matches in both images, in source pixels.
 
     The loss is Cauchy's at one and a half times the noise, which is estimated along with the pose;
-    the influence of matches of high leverage is bounded. The covariance is that of an M-estimator
-    (Huber 1981), which presumes no normal distribution of the errors.
+    the influence of matches of high leverage is bounded. See `Equations.covariance`.
     """
     rays = matches.left
     inverse = np.clip(triangulated(pose, matches).inverse_distance, 0, 1 / NEAREST)
@@ -128,12 +135,28 @@ class Equations:
         return -(self.solving @ (self.errors + self.by_pose @ step)[..., None])[..., 0]
 
     def covariance(self) -> FloatArray:
-        """H⁻¹ (Σ ψ² g gᵀ) H⁻¹ [5, 5], H with the mean slope of ψ (Huber, Robust Statistics, 1981)."""
-        scores = (self.residual_weights * self.leverage_weights)[:, None] * self.gradients
-        slope = (2 * self.residual_weights**2 - self.residual_weights).mean()
-        spread = np.linalg.inv(slope * _summed(self.information, self.leverage_weights))
-        freedom = len(scores) / max(len(scores) - 5, 1)
-        return freedom * spread @ (scores.T @ scores) @ spread
+        """That of an M-estimator, of errors distributed in whatever way, alike for all matches [5, 5].
+
+        s² H⁻¹ (Σ m² A) H⁻¹ with H = Σ m A, A the matches' information and m their leverage weights. s² is
+        the mean ψ² over the square of ψ's mean slope, of n - 5 degrees of freedom and with the factor for
+        few matches of Huber, Robust Statistics, 1981, 7.6. It is known from n matches alone, and the region
+        of 95 % confidence is that of F: the covariance is enlarged until χ²'s is as large.
+        """
+        count = int(self.seen.sum())
+        weights, freedom = self.residual_weights[self.seen], max(count - PARAMETERS, 1)
+        slopes = 2 * weights**2 - weights
+        slope = slopes.mean()
+        few = 1 + PARAMETERS / count * slopes.var() / slope**2
+        square = ((weights * self.distances[self.seen]) ** 2).sum() / freedom * (few / slope) ** 2
+        spread = np.linalg.inv(_summed(self.information, self.leverage_weights))
+        middle = _summed(self.information, self.leverage_weights**2)
+        return square * _from_few(freedom) * spread @ middle @ spread
+
+
+def _from_few(freedom: int) -> float:
+    """Square of the size of F's region over that of χ²'s."""
+    largest = PARAMETERS * fdtri(PARAMETERS, max(WORTH * freedom, 1), COVERED)
+    return float(largest / chdtri(PARAMETERS, 1 - COVERED))
 
 
 def _summed(information: FloatArray, weights: FloatArray | float = 1.0) -> FloatArray:

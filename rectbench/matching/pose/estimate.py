@@ -222,6 +222,10 @@ def relative_pose(
 
     start = perf_counter()
     result = adjusted(left, right, pose, ahead)
+    # Too few are within what the consensus left of its own matches' noise.
+    limit_px = min(threshold_px, WITHIN_DEVIATIONS * max(result.noise_px, FINEST_PX))
+    fitting = seen[np.abs(sampson_px(seen.terms(), essential(result.pose))[0]) <= limit_px]
+    ahead = fitting[in_front(result.pose, fitting, limit_px)]
     ahead = ahead[depth_consistent(result.pose, ahead, limit_px)]
     result = adjusted(left, right, result.pose, ahead)
     limit_px = WITHIN_DEVIATIONS * max(result.noise_px, FINEST_PX)

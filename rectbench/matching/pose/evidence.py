@@ -22,6 +22,9 @@ PICKS = 5
 NEIGHBOURS = 8
 SIMILAR = 0.15
 """Relative difference of the distances of two points on one surface."""
+SURFACES = 0.5
+"""Matches without a neighbour at a similar distance, of those that chance would leave so, up to which there
+are surfaces: 0.01 to 0.25 in rendered scenes, 1 of independent depths."""
 STAYING = 0.9
 """Of a photograph stored twice, or of two from one place, 93 % of the matches stay at least."""
 LEAST_STAYING = 8
@@ -151,7 +154,8 @@ def depth_consistent(pose: Pose, matches: RayMatches, limit_px: float) -> BoolAr
     """Whether one of the 8 nearest matches [N] in the left image lies at a similar distance.
 
     Most points of a surface do. A wrong match that happens to lie on its epipolar line does not, and
-    epipolar geometry alone cannot tell. All are kept where fewer than half of them are consistent.
+    epipolar geometry alone cannot tell. All are kept where nearly as many lie alone as would if neighbours
+    were any matches at all: where depths know nothing of each other.
     """
     if len(matches) <= NEIGHBOURS:
         return np.ones(len(matches), bool)
@@ -160,4 +164,15 @@ def depth_consistent(pose: Pose, matches: RayMatches, limit_px: float) -> BoolAr
     tolerance = SIMILAR * np.abs(inverse) + limit_px * matches.rad_per_px
     differences = np.abs(inverse[near[:, 1:]] - inverse[:, None])
     similar: BoolArray = np.any(differences <= tolerance[:, None], axis=1)
-    return similar if 2 * similar.sum() >= len(matches) else np.ones(len(matches), bool)
+    alone, by_chance = (~similar).sum(), _alone_by_chance(inverse, tolerance)
+    return similar if alone <= SURFACES * by_chance else np.ones(len(matches), bool)
+
+
+def _alone_by_chance(inverse: FloatArray, tolerance: FloatArray) -> float:
+    """How many of the matches [N] would lie alone if any 8 of the others were the neighbours of each."""
+    ordered = np.sort(inverse)
+    last, first = (
+        np.searchsorted(ordered, inverse + sign * tolerance, side) for sign, side in ((1, "right"), (-1, "left"))
+    )
+    share = (last - first - 1) / (len(inverse) - 1)
+    return float(((1 - share) ** NEIGHBOURS).sum())

@@ -1,0 +1,216 @@
+"""No map gains by being another one where it is looked at: a cheat is invalid, or no better than its twin."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+import rectbench as rb
+from rectbench.scored import Delivered, ScoredView, check_agreement
+from rectbench.types import FloatArray
+from rectbench.warps.jacobians import log_distortion_parts
+
+RIG = rb.load_rig("sony-as200v").scaled(1 / 3)
+HONEST = "abraham"
+
+
+def scored(rect: rb.Rectification) -> float:
+    """The log distortion that ranks; infinite where it has none. Raises InvalidResult as a cell would."""
+    delivered = Delivered.of(rect, ScoredView.of(rect.rig))
+    check_agreement(rect, delivered)
+    return log_distortion_parts(delivered.within(0.95).both)[0] if delivered.keeps(0.95) else math.inf
+
+
+def with_warps(rect: rb.Rectification, changed: Callable[[rb.Warp], rb.Warp]) -> rb.Rectification:
+    return replace(rect, left=changed(rect.left), right=changed(rect.right))
+
+
+@dataclass(frozen=True, eq=False)
+class Discs(rb.Warp):
+    """Another map within small discs about some pixels: there the image is moved, and not stretched."""
+
+    centres: Any = None
+    radius_px: float = 0.02
+
+    def forward(self, px: Any) -> FloatArray:
+        px = np.asarray(px, dtype=float)
+        flat = px.reshape(-1, 2)
+        moved = super().forward(flat)
+        off, which = self._nearest(flat)
+        inside = off <= self.radius_px
+        moved[inside] = (
+            super().forward(self.centres[which[inside]]) + flat[inside] - self.centres[which[inside]]
+        )
+        return moved.reshape(px.shape)
+
+    def jacobian(self, px: Any) -> FloatArray:
+        px = np.asarray(px, dtype=float)
+        J = super().jacobian(px)
+        inside = self._nearest(px.reshape(-1, 2))[0].reshape(px.shape[:-1]) <= self.radius_px
+        J[inside] = np.eye(2)
+        return J
+
+    def _nearest(self, px: FloatArray) -> tuple[FloatArray, Any]:
+        from scipy.spatial import cKDTree
+
+        return cKDTree(self.centres).query(px)  # type: ignore[no-any-return]
+
+
+def with_discs(centres: dict[str, FloatArray], radius_px: float = 0.02) -> rb.Rectification:
+    rect = rb.rectify(RIG, method=HONEST)
+    sides = {
+        side: Discs(warp.source, warp.R_rect_cam, warp.target, centres[side], radius_px)
+        for side, warp in (("left", rect.left), ("right", rect.right))
+    }
+    return replace(rect, **sides)
+
+
+def discs_at_known_pixels() -> rb.Rectification:
+    return with_discs({side: rb.evaluation_pixels(getattr(RIG, side)) for side in ("left", "right")})
+
+
+def discs_at_scored_pixels() -> rb.Rectification:
+    view = ScoredView.of(RIG)
+    return with_discs({side: view.side(side).pixels for side in ("left", "right")}, 0.6)
+
+
+def discs_at_some_scored_pixels() -> rb.Rectification:
+    view = ScoredView.of(RIG)
+    return with_discs({side: view.side(side).pixels[::4] for side in ("left", "right")}, 0.6)
+
+
+def cropped() -> rb.Rectification:
+    rect = rb.rectify(RIG, method=HONEST)
+    return rb.framed(rect, rb.Framing(fov_deg=(34, 34)))
+
+
+class FalseJacobian(rb.Warp):
+    def jacobian(self, px: Any) -> FloatArray:
+        return np.broadcast_to(np.eye(2), (*np.shape(px)[:-1], 2, 2)).copy()
+
+
+def false_jacobian() -> rb.Rectification:
+    rect = rb.rectify(RIG, method=HONEST)
+    return with_warps(rect, lambda w: FalseJacobian(w.source, w.R_rect_cam, w.target))
+
+
+@dataclass(frozen=True)
+class Wave(rb.Profile):
+    """A function that falls within, and says that it rises."""
+
+    low: float = -1.6
+    high: float = 1.6
+    constants = {"low": -1.6, "high": 1.6}  # noqa: RUF012
+
+    def value(self, c: Any, angle: Any, xp: Any) -> Any:
+        return 200.0 * (angle + 0.3 * xp.sin(8.0 * angle)) + 320.0
+
+    def angle(self, c: Any, value: Any, xp: Any) -> Any:
+        return (value - 320.0) / 200.0
+
+
+def folded() -> rb.Rectification:
+    rect = rb.rectify(RIG, method=HONEST)
+    return with_warps(rect, lambda w: replace(w, target=rb.Epipolar(Wave(), w.target.v)))
+
+
+class OtherTables(rb.Rectification):
+    def maps(self, side: Any) -> Any:
+        map_x, map_y = super().maps(side)
+        return map_x, map_y + np.float32(0.5)
+
+
+def other_tables() -> rb.Rectification:
+    rect = rb.rectify(RIG, method="local-homography")
+    return OtherTables(rect.rig, rect.left, rect.right, rect.size)
+
+
+class KnowsTheScorer(rb.Warp):
+    """The identity whenever it is asked for the crosses that derivatives are taken from."""
+
+    def forward(self, px: Any) -> FloatArray:
+        px = np.asarray(px, dtype=float)
+        if px.ndim == 3 and len(px) > 5000:
+            return px + np.array([10.0, 10.0])
+        return super().forward(px)
+
+
+def knows_the_scorer() -> rb.Rectification:
+    rect = rb.rectify(RIG, method=HONEST)
+    return with_warps(rect, lambda w: KnowsTheScorer(w.source, w.R_rect_cam, w.target))
+
+
+class OtherInverse(rb.Warp):
+    def inverse(self, px_rect: Any) -> FloatArray:
+        return super().inverse(px_rect) + 0.01
+
+
+def other_inverse() -> rb.Rectification:
+    rect = rb.rectify(RIG, method=HONEST)
+    return with_warps(rect, lambda w: OtherInverse(w.source, w.R_rect_cam, w.target))
+
+
+def mirrored() -> rb.Rectification:
+    """Upside down: consistent, and no image that anybody wants."""
+    rect = rb.rectify(RIG, method="conventional")
+    _, height = rect.size
+    flip = np.array([[1, 0, 0], [0, -1, height - 1], [0, 0, 1.0]])
+    return with_warps(rect, lambda w: replace(w, target=rb.Perspective(flip @ w.target.matrix)))
+
+
+FOUND_OUT = {
+    discs_at_scored_pixels: "the map is folded or mirrored|lookup table has a log distortion of",
+    discs_at_some_scored_pixels: r"inverse\(forward\(x\)\) is not x, near pixel",
+    false_jacobian: "the stated jacobian is not the derivative of forward, near pixel",
+    folded: "the map is folded or mirrored",
+    other_tables: "the lookup table is not the inverse map, near pixel",
+    knows_the_scorer: "the left lookup table has a log distortion of",
+    other_inverse: r"inverse\(forward\(x\)\) is not x, near pixel",
+    mirrored: "the map is folded or mirrored",
+}
+
+
+@pytest.mark.parametrize("cheat", FOUND_OUT, ids=lambda cheat: cheat.__name__)
+def test_a_map_that_contradicts_itself_is_invalid(cheat: Callable[[], rb.Rectification]) -> None:
+    with pytest.raises(rb.InvalidResult, match=FOUND_OUT[cheat]) as refusal:
+        scored(cheat())
+    assert "\n" not in str(refusal.value)
+
+
+def test_what_is_done_where_nobody_looks_gains_nothing() -> None:
+    honest = scored(rb.rectify(RIG, method=HONEST))
+    assert scored(discs_at_known_pixels()) == pytest.approx(honest, rel=1e-9)
+
+
+def test_who_crops_is_not_ranked() -> None:
+    assert scored(cropped()) == math.inf
+
+
+@pytest.mark.parametrize("width", [64, 640])
+@pytest.mark.parametrize("name", ["t265", "canon-8mm", "bumblebee2", "tumvi", "ocam"])
+@pytest.mark.parametrize("method", ["conventional", "abraham", "hartley", "fusiello", "local-homography"])
+def test_honest_methods_agree_with_themselves(method: str, name: str, width: int) -> None:
+    pair = rb.load_rig(name)
+    pair = pair.scaled(width / pair.left.width)
+    try:
+        rect = rb.rectify(pair, method=method)
+    except rb.Unsupported:
+        return
+    check_agreement(rect, Delivered.of(rect, ScoredView.of(pair)))
+    small = rb.framed(rect, rb.Framing(focal_px=10.0))
+    check_agreement(small, Delivered.of(small, ScoredView.of(pair)))
+
+
+def test_the_same_rectification_is_judged_alike_twice() -> None:
+    rect = with_discs({side: ScoredView.of(RIG).side(side).pixels for side in ("left", "right")}, 0.6)
+    reasons = []
+    for _ in range(2):
+        with pytest.raises(rb.InvalidResult) as refusal:
+            scored(rect)
+        reasons.append(str(refusal.value))
+    assert reasons[0] == reasons[1]
