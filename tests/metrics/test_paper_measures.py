@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 import rectbench as rb
-from rectbench.metrics.reconstruction_sizes import MEGAPIXELS, ReconstructionSizes, sized
-from rectbench.metrics.row_error_rectified_features import RectifiedFeatureRowError
-from rectbench.metrics.view_at_source_size import ViewAtSourceSize, share_in_window
+from rectbench.metrics.paper.reconstruction_sizes import MEGAPIXELS, ReconstructionSizes, sized
+from rectbench.metrics.paper.row_error_rectified_features import RectifiedFeatureRowError
+from rectbench.metrics.paper.view_at_source_size import ViewAtSourceSize, share_in_window
 from tests.rigs_for_tests import aligned_rig
 
 SIZE = WIDTH, HEIGHT = 320, 240

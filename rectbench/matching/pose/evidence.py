@@ -172,7 +172,8 @@ def _alone_by_chance(inverse: FloatArray, tolerance: FloatArray) -> float:
     """How many of the matches [N] would lie alone if any 8 of the others were the neighbours of each."""
     ordered = np.sort(inverse)
     last, first = (
-        np.searchsorted(ordered, inverse + sign * tolerance, side) for sign, side in ((1, "right"), (-1, "left"))
+        np.searchsorted(ordered, inverse + sign * tolerance, side)
+        for sign, side in ((1, "right"), (-1, "left"))
     )
     share = (last - first - 1) / (len(inverse) - 1)
     return float(((1 - share) ** NEIGHBOURS).sum())
