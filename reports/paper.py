@@ -125,7 +125,7 @@ report = rb.Report(
             title="Time, alone on the machine",
             pairs=(
                 ("street", "canon-8mm", "sideways"),
-                ("street", "sony-as200v", "sideways"),
+                ("room", "sony-as200v", "sideways"),
                 ("street", "t265", "sideways"),
             ),
             methods=FISHEYE,

@@ -44,6 +44,7 @@ class ReconstructionSizes(Metric):
             f"Share of the pixels in the middle {100 * view:.0f} % of the left view, of those that both "
             f"cameras see, that get {meaning}, where {megapixels:g} megapixels of the matched image show the "
             "source.",
+            shown="pairs" if what == "completeness" else "rows",
         )
         for what, meaning in (("density", "any depth"), ("completeness", "a depth within 5 % of the truth"))
         for view in VIEWS
