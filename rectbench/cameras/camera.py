@@ -115,7 +115,7 @@ class Camera(Projection):
 
         >>> import rectbench as rb
         >>> round(rb.load_rig("bumblebee2").left.fov_deg), round(rb.load_rig("t265").left.fov_deg)
-        (87, 160)
+        (88, 160)
         """
         (centre,), _ = self.project([[0.0, 0.0, 1.0]])
         right, bottom = self.width - 0.5, self.height - 0.5

@@ -61,6 +61,8 @@ def make_plan(report: Report, selection: Selection | None = None, data: str | Pa
     """
     chosen = selection or Selection()
     sources = [source.located(report.name, data) for source in report.sources]
+    if chosen.scenes is not None and not any("scenes" in source.selects for source in sources):
+        raise InvalidInput(f"report {report.name} is of lenses without a scene; expected no --scenes")
     own = [own_names(source, sources) for source in sources]
     tasks: dict[Cell, CellTask] = {}
     for source, names in zip(sources, own, strict=True):

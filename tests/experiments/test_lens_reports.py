@@ -163,6 +163,13 @@ def test_the_scene_none_selects_lenses_alone() -> None:
     assert not plan.is_whole
 
 
+def test_scenes_cannot_be_selected_where_there_are_none() -> None:
+    with pytest.raises(
+        rb.InvalidInput, match="report parts is of lenses without a scene; expected no --scenes"
+    ):
+        make_plan(lenses(), Selection(scenes=["street"]))
+
+
 def test_a_scene_may_not_be_called_none(tmp_path: Path) -> None:
     wall = write_scene(tmp_path, "none")
     with pytest.raises(rb.InvalidInput, match="scene none stands for no scene"):
