@@ -218,7 +218,10 @@ def _against_each(statement: Statement, own: Sequence[Result], rivals: Sequence[
         return _Found({}, 0, ())
     alone = _alone(statement, own)
     against = [(_against(statement, own, rows), _alone(statement, rows)) for rows in rivals]
-    by_rig = {rig: max(found.by_rig.get(rig, 0.0) for found, _ in against) for rig in alone.by_rig}
+    by_rig = {
+        rig: max(found.by_rig.get(rig, 0.0) for found, _ in against) if math.isfinite(own_value) else math.inf
+        for rig, own_value in alone.by_rig.items()
+    }
     lost = {rig: math.inf for rig in alone.absent if any(rig in rival.by_rig for _, rival in against)}
     failed = alone.failed + sum(rival.failed for _, rival in against)
     absent = tuple(rig for rig in alone.absent if rig not in lost)

@@ -252,6 +252,11 @@ def test_a_rival_that_does_not_show_that_much_is_not_less_and_one_that_alone_doe
     assert judge(rows("ours", none) + rows("theirs", np.ones((4, 1))), count()).tests[0].rigs_held == 0
 
 
+def test_what_is_without_bound_is_never_the_least() -> None:
+    endless = rows("ours", np.full((4, 1), math.inf))
+    assert judge(endless + rows("theirs", np.ones((4, 1))), count()).tests[0].rigs_held == 0
+
+
 def test_every_variant_of_a_rival_counts() -> None:
     variant = rows("theirs", np.full((4, 1), 0.5), options='{"focal":"balance"}')
     table = rows("ours", np.ones((4, 1))) + rows("theirs", np.full((4, 1), 2.0))
