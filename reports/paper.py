@@ -61,7 +61,7 @@ report = rb.Report(
             methods=FISHEYE,
             options=OPTIONS,
             metrics=("geometry", "energy", "view_at_source_size"),
-            figures=("scatter", "theorems"),
+            figures=("coverage-curve", "critical-difference", "theorems"),
         ),
         rb.Group(
             name="fisheye",

@@ -27,7 +27,7 @@ report = rb.Report(
             methods=METHODS,
             matches=("true + 0.1 px",),
             metrics=("geometry",),
-            figures=("scatter",),
+            figures=("coverage-curve", "critical-difference"),
         ),
         rb.Group(
             name="pairs",

@@ -17,5 +17,5 @@ report = rb.Report(
     poses=("calibrated", "estimated"),
     methods=("conventional", "abraham", "hartley", "fusiello", "local-homography"),
     metrics=("geometry", "row_error_features", "row_error_board", "timing"),
-    figures=("bars", "scatter", "pairs", "maps", "clouds"),
+    figures=("bars", "coverage-curve", "pairs", "maps", "clouds"),
 )

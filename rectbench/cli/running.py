@@ -99,12 +99,16 @@ def compare(
 
 @verb(PlanRequest)
 def plan(request: PlanRequest) -> int:
-    """Tell how many rigs, scenes and seeds would tell methods apart, by a run that is there."""
+    """Tell how many rigs, scenes and seeds would tell methods apart, by a run that is there.
+
+    Exit code 3 where the run has too few rigs to tell.
+    """
     from rectbench.applications.plan_report import plan_report
     from rectbench.cli.printing.design import show_design
 
-    show_design(plan_report(request))
-    return GOOD
+    found = plan_report(request)
+    show_design(found)
+    return INCOMPLETE if found.told.empty else GOOD
 
 
 def _incomplete(reason: object) -> int:

@@ -90,7 +90,6 @@ class Coverage(Metric):
             "higher",
             "Share of source pixels that reach the output.",
             tolerance=Tolerance(0.0, 0.002),
-            shown="page",
             promised=True,
         ),
         Column.share(
@@ -99,7 +98,6 @@ class Coverage(Metric):
             "higher",
             "Share of the lens's solid angle that is kept.",
             tolerance=Tolerance(0.0, 0.002),
-            shown="page",
             promised=True,
         ),
         Column.share(

@@ -183,16 +183,15 @@ class DistortionMetric(Metric):
         for protocol, shown, how, meaning in (
             (
                 "native",
-                "summary",
+                "page",
                 "as its authors scale it",
                 "The paper's mean L per source pixel that is shown, at the scale each method's authors "
-                "choose. An "
-                "image shrunk to nothing has L = 1.",
+                "choose. An image shrunk to nothing has L = 1.",
             ),
-            ("rescaled", "page", "best single scale", "L after the one scale that is best for it."),
+            ("rescaled", "topic", "best single scale", "L after the one scale that is best for it."),
             (
                 "stretched",
-                "summary",
+                "topic",
                 "best width and height",
                 "L after the best scales of width and of height.",
             ),

@@ -49,7 +49,7 @@ class Timing(Metric):
         _milliseconds(
             "fit_s", "fit", "Time to fit the rectification.", shown="summary", promised=True, panel="fit"
         ),
-        _milliseconds("maps_s", "maps", "Time to make both lookup tables.", shown="page", promised=True),
+        _milliseconds("maps_s", "maps", "Time to make both lookup tables.", promised=True),
         _milliseconds(
             "warp_s", "warp", "Time to warp both images, their tables included.", promised=True, panel="warp"
         ),

@@ -4,6 +4,10 @@ from __future__ import annotations
 
 from rectbench.plugins.metric import Case, Column, Metric, Tolerance
 from rectbench.scored import SHARES
+from rectbench.warps import Perspective
+
+PROJECTION, PERSPECTIVE = "projection", "perspective"
+"""The note of a cell whose rectified images are perspective ones, whatever method made them."""
 
 
 def across_key(share: float) -> str:
@@ -46,6 +50,8 @@ class View(Metric):
 
     def compute(self, case: Case) -> dict[str, float]:
         """Of both images: the lesser share kept, the mean field of view."""
+        if all(isinstance(warp.target, Perspective) for warp in (case.rect.left, case.rect.right)):
+            case.remarks[PROJECTION] = PERSPECTIVE
         view = case.pair.scored_view
         across = {across_key(share): view.across_deg(share) for share in SHARES}
         return {"view_kept": case.delivered.kept_share, **across}

@@ -146,10 +146,13 @@ def _integrator_class(variant: str) -> Any:
             local = mi.warp.square_to_cosine_hemisphere(sampler.next_2d(active))
             direction = mi.Frame3f(normal).to_world(local)
             ray = si.spawn_ray(direction)
+            # Whether there is anything is told sooner than what is nearest.
+            ray.maxt = self.reach
+            near = scene.ray_test(ray, active)
             ray.maxt = self.sight
-            found = scene.ray_intersect_preliminary(ray, active=active)
-            room = _from(self.fill, direction) * dr.select(found.t < self.reach, OCCLUDED_SHARE, 1.0)
-            return dr.select(found.is_valid(), room, _from(self.outside, direction))
+            far = scene.ray_test(ray, active & ~near & (self.sight > self.reach))
+            room = _from(self.fill, direction) * dr.select(near, OCCLUDED_SHARE, 1.0)
+            return dr.select(near | far, room, _from(self.outside, direction))
 
         def _sunlight(self, scene: Any, si: Any, normal: Any, active: Any) -> Any:
             cosine = dr.dot(normal, self.sun)

@@ -1,9 +1,9 @@
-"""The figures of a run: which drawings there are, and drawing only those that changed."""
+"""The figures of a run: which drawings there are, and which of them changed."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -113,30 +113,51 @@ class Drawn:
     width_inches: float = PAGE_INCHES
 
 
+Draw = Callable[[Sequence[PlacedDrawing]], Iterator[tuple[PlacedDrawing, str]]]
+"""Draws into a run's folder; gives each drawing as it is done, with what went wrong or nothing."""
+
+
 def draw_changed(
-    folder: Path, drawings: list[PlacedDrawing], known: Mapping[str, str], advance: Advance
+    folder: Path, drawings: Sequence[PlacedDrawing], known: Mapping[str, str], draw: Draw, advance: Advance
 ) -> tuple[list[Drawn], dict[str, str]]:
     """Draw those whose digest is not the `known` one, or whose files are gone.
 
     Returns what the page shows and the digests of what is drawn now. Where a figure cannot be drawn,
     an earlier one stays, and it is tried again next time. `advance` is called after each.
     """
-    drawn, digests = [], {}
+    digests, errors, changed = {}, {}, []
     for placed in drawings:
-        there = all((folder / placed.path(extension)).is_file() for extension in EXTENSIONS)
-        error = ""
         try:
-            now = placed.digest
-            if known.get(placed.name) != now or not there:
-                _draw(folder, placed)
-                there = True
-            digests[placed.name] = now
-        except Exception as failure:  # a lost image must not cost the tables and the other figures
-            error = " ".join(f"{type(failure).__name__}: {failure}".split())
-        width = _width_inches(folder / placed.path("png"), placed.drawing.dpi) if there else PAGE_INCHES
-        drawn.append(Drawn(placed, error, there, width))
+            digests[placed.name] = placed.digest
+        except Exception as failure:  # data of a plugin's that have no `repr`
+            errors[placed.name] = what_failed(failure)
+            advance()
+            continue
+        if known.get(placed.name) == digests[placed.name] and _is_there(folder, placed):
+            advance()
+        else:
+            changed.append(placed)
+    for placed, error in draw(changed):
+        if error:  # a lost image must not cost the tables and the other figures
+            errors[placed.name] = error
+            del digests[placed.name]
         advance()
-    return drawn, digests
+    return [_drawn(folder, placed, errors.get(placed.name, "")) for placed in drawings], digests
+
+
+def what_failed(failure: Exception) -> str:
+    """An exception in one line."""
+    return " ".join(f"{type(failure).__name__}: {failure}".split())
+
+
+def _is_there(folder: Path, placed: PlacedDrawing) -> bool:
+    return all((folder / placed.path(extension)).is_file() for extension in EXTENSIONS)
+
+
+def _drawn(folder: Path, placed: PlacedDrawing, error: str) -> Drawn:
+    if not _is_there(folder, placed):
+        return Drawn(placed, error, there=False)
+    return Drawn(placed, error, True, _width_inches(folder / placed.path("png"), placed.drawing.dpi))
 
 
 def _width_inches(png: Path, dpi: int) -> float:
@@ -146,7 +167,8 @@ def _width_inches(png: Path, dpi: int) -> float:
     return int.from_bytes(head[16:20], "big") / dpi
 
 
-def _draw(folder: Path, placed: PlacedDrawing) -> None:
+def draw_files(folder: Path, placed: PlacedDrawing) -> None:
+    """Draw into the folder, in rectbench's style; raises whatever the figure raises."""
     import matplotlib
 
     with matplotlib.rc_context():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 
+from rectbench.pairs.spec import NO_SCENE
 from rectbench.plugins.result import Part
 from rectbench.store.keys import digest
 
@@ -27,9 +28,9 @@ def named(part: Part, stem: str, *parts: str) -> str:
 
 
 def pair_labels(run: Part) -> dict[tuple[str, str, str], str]:
-    """A label of each (scene, rig, motion): scene over rig; the motion where that leaves two alike."""
+    """A label of each (scene, rig, motion): any scene over the rig; the motion where two are alike."""
     places = list(dict.fromkeys(r.place for r in run.results))
-    short = {place: f"{place[0]}\n{place[1]}" for place in places}
+    short = {place: place[1] if place[0] == NO_SCENE else f"{place[0]}\n{place[1]}" for place in places}
     if len(set(short.values())) == len(places):
         return short
     return {place: f"{label}\n{place[2]}" for place, label in short.items()}

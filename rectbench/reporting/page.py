@@ -7,12 +7,15 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from rectbench.pairs.spec import NO_SCENE
 from rectbench.plugins.result import distinct
 from rectbench.reporting.asked import methods_part, part_title
 from rectbench.reporting.figures import EXTENSIONS, Drawn
 from rectbench.reporting.names import slug
 from rectbench.reporting.style import looks
+from rectbench.reporting.tables.findings import perspective_limit
 from rectbench.reporting.tables.table import SPELLINGS, Entry, Table
+from rectbench.reporting.tables.tabulation import ALL_MOTIONS, ALL_RIGS
 from rectbench.runs.record import RunRecord
 from rectbench.runs.run import Run
 
@@ -21,6 +24,8 @@ LAST = ("Reconstruction", "Time", "Every pair", "Photographs")
 """The headings of a part in their order; topics that are not among them come between."""
 _TABLES = {
     "main": "Ranking",
+    "rigs": "Ranking",
+    "beliefs": "Ranking",
     "pose": "Poses",
     "rows": "Row error",
     "distortion": "Distortion",
@@ -33,6 +38,8 @@ _TABLES = {
     "left-out": "Photographs",
 }
 """Under which heading each kind of table stands."""
+_MOST_ROWS = 30
+"""Of a longer table the page shows the averages over all rigs or motions, and folds the rest."""
 _FACTS = {
     "command": "Command",
     "data": "Photographs of",
@@ -67,6 +74,8 @@ class Part:
     anchor: str
     title: str
     topics: list[Topic]
+    finding: str
+    """See `perspective_limit`; empty where another part, of more rigs, tells it better."""
 
 
 def render_page(run: Run, tables: Sequence[Table], drawn: Sequence[Drawn]) -> str:
@@ -80,14 +89,29 @@ def render_page(run: Run, tables: Sequence[Table], drawn: Sequence[Drawn]) -> st
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.globals["sort_value"] = _sort_value
-    methods = distinct(m for part in run.parts if (shown := methods_part(part)) for m in shown.methods)
+    environment.globals |= {
+        "sort_value": _sort_value,
+        "summaries": (ALL_RIGS, ALL_MOTIONS),
+        "most_rows": _MOST_ROWS,
+    }
+    shown = {part.group: methods_part(part) for part in run.parts}
+    methods = distinct(m for part in shown.values() if part for m in part.methods)
+    widest = max(filter(None, shown.values()), key=lambda part: len(part.rigs), default=None)
     return environment.get_template("index.html.j2").render(
         run=run,
         record=run.record,
         methods=methods,
         of_kind={table.kind: table for table in tables},
-        parts=[_part(part, tables, drawn) for part in run.parts],
+        scenes=[scene for scene in run.scenes if scene != NO_SCENE],
+        parts=[
+            _part(
+                part,
+                tables,
+                drawn,
+                perspective_limit(widest) if widest and part.group == widest.group else "",
+            )
+            for part in run.parts
+        ],
         tables=tables,
         colours={method: look.colour for method, look in looks(run.methods).items()},
         facts=_facts(run.record),
@@ -96,7 +120,7 @@ def render_page(run: Run, tables: Sequence[Table], drawn: Sequence[Drawn]) -> st
     )
 
 
-def _part(part: Run, tables: Sequence[Table], drawn: Sequence[Drawn]) -> Part:
+def _part(part: Run, tables: Sequence[Table], drawn: Sequence[Drawn], finding: str) -> Part:
     anchor = slug("part", part.group) if part.group else ""
     heading_of = {slug(topic): topic for topic in part.catalogue.topics} | _TABLES
     mine = [table for table in tables if table.part == part.group and table.kind in heading_of]
@@ -111,7 +135,7 @@ def _part(part: Run, tables: Sequence[Table], drawn: Sequence[Drawn]) -> Part:
         )
     between = sorted(found.keys() - {*FIRST, *LAST})
     topics = [found[heading] for heading in (*FIRST, *between, *LAST) if heading in found]
-    return Part(part.group, anchor, part_title(part), topics)
+    return Part(part.group, anchor, part_title(part), topics, finding)
 
 
 def _sort_value(entry: Entry) -> str:

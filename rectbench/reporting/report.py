@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import json
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
+from rectbench.experiments.execution.pool import Workers
+from rectbench.experiments.execution.running import workers_for
 from rectbench.plugins.figure import Sources
 from rectbench.progress import Progress
+from rectbench.reporting.drawing import draw_here, draw_in_workers
 from rectbench.reporting.figures import EXTENSIONS, draw_changed, placed_drawings
 from rectbench.reporting.page import render_page
 from rectbench.reporting.sources import sources_of
@@ -20,14 +24,22 @@ MANIFEST = "figures/manifest.json"
 """What is drawn already, and which files earlier reports of this folder left."""
 
 
-def write_report(run_dir: Path, *, progress: Progress | None = None, sources: Sources | None = None) -> Path:
+def write_report(
+    run_dir: Path,
+    *,
+    progress: Progress | None = None,
+    sources: Sources | None = None,
+    workers: Workers | None = None,
+) -> Path:
     """Write tables/, figures/ and index.html of a run; returns the page's path.
 
     Parameters
     ----------
     run_dir : a folder with run.json and results.parquet.
     progress : where to tell how many figures are done; nowhere by default.
-    sources : where pictures come from; the bench's store by default.
+    sources : where pictures come from; the bench's store by default. With others, figures are drawn in this
+        process, since nobody knows whether they travel.
+    workers : who draws; processes of the report's own by default, one a core.
 
     Figures whose data have not changed are left as they are. Files that an earlier report of the
     same folder wrote and this one does not are removed. Where a picture's source is gone, the page
@@ -41,8 +53,13 @@ def write_report(run_dir: Path, *, progress: Progress | None = None, sources: So
     tables = list(all_tables(run))
     written = [path for table in tables for path in _write_table(run_dir, table)]
     drawings = placed_drawings(run, sources or sources_of(run))
-    with (progress or Progress()).stage("figures", len(drawings)) as advance:
-        drawn, digests = draw_changed(run_dir, drawings, manifest["figures"], advance)
+    with ExitStack() as stack:
+        if sources is None:
+            draw = draw_in_workers(run, workers or stack.enter_context(workers_for(run.record.spec)))
+        else:
+            draw = draw_here(run_dir)
+        advance = stack.enter_context((progress or Progress()).stage("figures", len(drawings)))
+        drawn, digests = draw_changed(run_dir, drawings, manifest["figures"], draw, advance)
     written += [figure.placed.path(e) for figure in drawn if figure.there for e in EXTENSIONS]
     _remove_leftovers(run_dir, set(manifest["files"]) - set(written))
     write_atomically(run_dir / "index.html", render_page(run, tables, drawn))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import itertools
 from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -119,8 +120,32 @@ def add_colour_bar(
 def encode(figure: Figure, extension: str, dpi: int) -> bytes:
     """The figure as a PDF, SVG or PNG file; `dpi` also sets the detail of images within it."""
     buffer = io.BytesIO()
-    figure.savefig(buffer, format=extension, dpi=dpi, metadata=_METADATA[extension])
+    with _quick_png():
+        figure.savefig(buffer, format=extension, dpi=dpi, metadata=_METADATA[extension])
     return buffer.getvalue()
+
+
+@contextmanager
+def _quick_png() -> Iterator[None]:
+    """Images as PNG in a third of the time, within SVG and PDF as well, where matplotlib offers no choice."""
+    from PIL import Image
+
+    Image.init()
+    usual = Image.SAVE["PNG"]
+
+    def save(image: Image.Image, *place: Any) -> None:
+        image.encoderinfo.setdefault("compress_level", _COMPRESSION)
+        usual(image, *place)
+
+    Image.register_save("PNG", save)
+    try:
+        yield
+    finally:
+        Image.register_save("PNG", usual)
+
+
+_COMPRESSION = 2
+"""Photographs take 7 % more than at zlib's usual 6, and a third of the time."""
 
 
 _METADATA: dict[str, dict[str, Any]] = {

@@ -14,7 +14,8 @@ from rectbench.runs.record import LEADING, TEXTS
 from rectbench.runs.run import read_run
 from rectbench.statistics.intervals import mean_interval, nested_means
 
-LEVELS = ["rig", "motion", "scene", "pose", "options", "seed"]
+_OUTERMOST = ("rig", "motion", "scene")
+LEVELS = [*_OUTERMOST, *(name for name in KEY if name not in (*_OUTERMOST, "method", "seed")), "seed"]
 """From what is drawn independently to what is nested in it."""
 
 

@@ -22,12 +22,14 @@ from rectbench.statistics.intervals import LEAST_UNITS, counted, ratio
 from rectbench.statistics.paired import NOISE
 from rectbench.statistics.power import resolved
 
+NO_SCENE = "none"
+"""The scene of lens pairs, of which nobody makes images."""
 NESTED = ("motion", "scene", "seed")
 """The levels within a rig, as `Place` has them."""
 OF_NOISY_POSES = ("Row error", "Reconstruction")
 """Topics that tell methods apart by how they carry an error of the pose."""
 COLUMNS = [
-    *("part", "pose", "a", "b", "rigs", "ratio", "resolves", "rigs_needed"),
+    *("part", "pose", "a", "b", "rigs", "ratio", "low", "high", "resolves", "rigs_needed"),
     *(f"{level}s{what}" for level in NESTED for what in ("", "_needed", "_share")),
     "reason",
 ]
@@ -42,16 +44,22 @@ class Design:
     column : whose values are compared, by their ratios on the same pair and seed.
     detect : the relative difference to be told, such as 0.02.
     table : a row for each pair of methods `a`, `b` of a part of the report under a pose: `rigs` that both
-        have values on; the geometric mean over these of the `ratio` a / b; the ratio that the design
-        `resolves` in four benches of five at Holm-corrected 5 %; `rigs_needed` for `detect` with motions,
-        scenes and seeds as they are; `scenes` (of a motion of a rig), `scenes_needed` with all else as it
-        is, missing where no number is enough, and their `scenes_share` of the variance between rigs, NaN
-        where none has a second one; likewise motions and seeds. `reason` says why a row has no numbers.
+        have values on; the geometric mean over these of the `ratio` a / b, and the ends `low`, `high` of
+        its 95 % interval; the ratio that the design `resolves` in four benches of five at Holm-corrected
+        5 %; `rigs_needed` for `detect` with motions, scenes and seeds as they are; `scenes` (of a motion of
+        a rig; 0 of pairs without one), `scenes_needed` with all else as it is, missing where no number is
+        enough, and their `scenes_share` of the variance between rigs, NaN where none has a second one;
+        likewise motions and seeds. `reason` says why a row has no numbers.
     """
 
     column: Column
     detect: float
     table: pd.DataFrame
+
+    @property
+    def told(self) -> pd.DataFrame:
+        """The rows that have numbers."""
+        return self.table[self.table["reason"] == ""]
 
 
 def design(folder: Path, detect: float, metric: str | None = None) -> Design:
@@ -92,18 +100,23 @@ def _rows(part: Run, pose: str, column: Column, detect: float) -> Iterator[dict[
     pairs = list(combinations(numbers, 2))
     for a, b in pairs:
         logs = _log_ratios(numbers[a], numbers[b], column)
-        row = {"part": part.group, "pose": pose, "a": a, "b": b}
+        row: dict[str, Any] = {"part": part.group, "pose": pose, "a": a, "b": b}
         rigs = len(distinct(place[0] for place in logs))
         if rigs < LEAST_UNITS:
             yield {**row, "rigs": rigs, "reason": f"{counted(rigs, 'rig')} in common: too few to plan from"}
             continue
-        yield {**row, "rigs": rigs, **_planned(Spread.of(logs), math.log1p(detect), len(pairs)), "reason": ""}
+        row |= {"rigs": rigs, "reason": "", **_planned(Spread.of(logs), math.log1p(detect), len(pairs))}
+        if {scene for _, _, scene, _ in logs} == {NO_SCENE}:
+            row |= {"scenes": 0, "scenes_needed": None, "scenes_share": 0.0}
+        yield row
 
 
 def _planned(spread: Spread, difference: float, tests: int) -> dict[str, Any]:
     needs = Needs.of(spread, difference, tests)
     row = {
         "ratio": ratio(spread.mean),
+        "low": ratio(spread.interval.low),
+        "high": ratio(spread.interval.high),
         "resolves": ratio(resolved(math.sqrt(spread.variance), spread.units, tests)),
         "rigs_needed": needs.units,
     }

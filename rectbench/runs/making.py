@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping, Sequence
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
 
-from rectbench.experiments.execution.running import checked_jobs, execute
+from rectbench.experiments.execution.pool import Workers
+from rectbench.experiments.execution.running import checked_jobs, execute, workers_for
 from rectbench.experiments.planning import find_report, make_plan
 from rectbench.experiments.selecting import Selection
 from rectbench.experiments.spec import Report
@@ -36,6 +38,7 @@ def run(
     dask: str | None = None,
     fresh: bool = False,
     progress: bool | None = None,
+    workers: Workers | None = None,
 ) -> pd.DataFrame:
     """Run a report and write its run.json, results.parquet and results.csv.
 
@@ -47,17 +50,21 @@ def run(
         before a name adds it to the report's own.
     data : the folder of photographs, for a report that takes them.
     options : options by method and name, laid over the report's.
-    jobs, dask, fresh : see `execute`.
+    jobs : worker processes; as many as there are cores by default.
+    dask, fresh : see `execute`.
     progress : bars on stderr; on a terminal alone by default.
+    workers : those to run it, in the place of `jobs` of its own.
 
     Returns one row a cell, in the report's order. Raises InvalidInput before anything runs where the
     report, a name, a file or an option cannot be used; Interrupted on Ctrl-C.
     """
     begin = time.monotonic()
     plan = make_plan(find_report(report), Selection(methods, scenes, rigs, seeds, options or {}), data)
-    count, folder = checked_jobs(jobs), run_folder(plan.report, out)
+    checked_jobs(jobs)
+    folder = run_folder(plan.report, out)
     check_writable(folder)
-    execution = execute(plan, jobs=count, dask=dask, fresh=fresh, progress=progress_for(progress))
+    with workers_for(plan.report, jobs) if workers is None else nullcontext(workers) as crew:
+        execution = execute(plan, crew, dask=dask, fresh=fresh, progress=progress_for(progress))
     table = table_of(plan, execution.outcomes)
     write_run(folder, table, RunRecord.of(execution, time.monotonic() - begin, _file_of(report)))
     return table

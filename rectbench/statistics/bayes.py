@@ -20,8 +20,8 @@ from rectbench.statistics.ranking import LEAST_SIGNED_RANK_UNITS, NO_SIGNED_RANK
 
 EQUIVALENT = 0.02
 """Methods whose values differ by less than this share are the same in practice."""
-SAMPLES = 5000
-"""Of the posterior: a probability is then known to 0.007."""
+SAMPLES = 2500
+"""Of the posterior: a probability is then known to 0.01."""
 BEYOND = 1e6
 """Stands for the logarithm of infinity, where only order counts."""
 

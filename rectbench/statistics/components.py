@@ -7,7 +7,7 @@ from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
 from statistics import fmean, median, variance
 
-from rectbench.statistics.intervals import Path, nested_means
+from rectbench.statistics.intervals import Interval, Label, margins_of, nested_means
 
 Below = tuple[Hashable, ...]
 """Some of a path."""
@@ -47,8 +47,14 @@ class Spread:
     variance: float
     levels: tuple[Level, ...]
 
+    @property
+    def interval(self) -> Interval:
+        """The t interval of the mean."""
+        margin = margins_of(math.sqrt(self.variance), self.units)
+        return Interval(self.mean, self.mean - margin, self.mean + margin, self.units)
+
     @classmethod
-    def of(cls, labelled: Mapping[Path, float]) -> Spread:
+    def of(cls, labelled: Mapping[Label, float]) -> Spread:
         """Of differences by (unit, ..., seed), of any depth, the same for all; at least two units.
 
         The components are those of nested random effects by the method of moments, unbiased for any numbers
@@ -69,7 +75,7 @@ class _Node:
     added: tuple[float, ...]
 
 
-def _levels(labelled: Mapping[Path, float], depth: int) -> tuple[Level, ...]:
+def _levels(labelled: Mapping[Label, float], depth: int) -> tuple[Level, ...]:
     nodes: dict[Below, _Node] = {path: _Node(value, ()) for path, value in labelled.items()}
     counts, is_known = [], []
     for _ in range(depth - 1):
@@ -106,7 +112,7 @@ def _joined(group: Sequence[_Node], component: float) -> _Node:
     return _Node(fmean(node.mean for node in group), (component / count, *below))
 
 
-def _own(labelled: Mapping[Path, float]) -> dict[Path, float]:
+def _own(labelled: Mapping[Label, float]) -> dict[Label, float]:
     """The differences less what each scene or seed does alike in all units that have it.
 
     What is left is scaled up by what the subtraction of a mean over so many units takes away.
@@ -116,7 +122,7 @@ def _own(labelled: Mapping[Path, float]) -> dict[Path, float]:
     shared: dict[Below, list[float]] = {}
     for path, value in within.items():
         shared.setdefault(path[1:], []).append(value)
-    own: dict[Path, float] = {}
+    own: dict[Label, float] = {}
     for path, value in within.items():
         alike = shared[path[1:]]
         units = len(alike)

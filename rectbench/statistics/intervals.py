@@ -22,8 +22,9 @@ from rectbench.types import FloatArray
 LEAST_UNITS = 3
 """Fewer units carry no interval: with two it would be 9 times as wide as their distance."""
 LARGEST_LOG = math.log(sys.float_info.max)
-Path = TypeVar("Path", bound=tuple[Hashable, ...])
+Label = TypeVar("Label", bound=tuple[Hashable, ...])
 """From a unit down to what is nested in it."""
+T = TypeVar("T", float, FloatArray)
 
 
 @dataclass(frozen=True)
@@ -96,7 +97,7 @@ def count_interval(successes: int, trials: int, level: float = 0.95) -> Interval
     return Interval(successes / trials, float(low), float(high), trials)
 
 
-def nested_means(labelled: Mapping[Path, float]) -> dict[Hashable, float]:
+def nested_means(labelled: Mapping[Label, float]) -> dict[Hashable, float]:
     """The value of each unit: the mean over its motions of the mean over scenes of the mean over seeds.
 
     Keys are (unit, motion, scene, seed), of any depth, the same for all; values that are NaN are left
@@ -126,8 +127,12 @@ def margins(values: FloatArray, level: float = 0.95) -> FloatArray:
         invalid="ignore", over="ignore"
     ):  # infinite values have no spread, huge ones an infinite one
         spread = np.std(values, axis=-1, ddof=1)
-    margin: FloatArray = stdtrit(units - 1, (1 + level) / 2) * spread / math.sqrt(units)
-    return margin
+    return margins_of(spread, units, level)
+
+
+def margins_of(spread: T, units: int, level: float = 0.95) -> T:
+    """The same by the standard deviation of the units' values, a number or an array; two units at least."""
+    return float(stdtrit(units - 1, (1 + level) / 2)) / math.sqrt(units) * spread
 
 
 def ratio(log: float) -> float:

@@ -154,7 +154,9 @@ def test_all_that_shapes_a_cell_shapes_its_key(tmp_path: Path, monkeypatch: pyte
 
 
 def test_what_shapes_no_row_shapes_no_key() -> None:
-    assert _key() == _key(name="other", title="Other", timeout_s=5.0, memory_gib=1.0, figures=("scatter",))
+    assert _key() == _key(
+        name="other", title="Other", timeout_s=5.0, memory_gib=1.0, figures=("coverage-curve",)
+    )
     # Images are rendered with samples, but these metrics do not look at images.
     assert _key(metrics=("geometry", "row_error")) == _key(metrics=("row_error", "geometry"), spp=8)
     assert _key(metrics=("row_error_features",)) != _key(metrics=("row_error_features",), spp=8)

@@ -25,15 +25,36 @@ from rectbench.warps import Cubic, Epipolar, Perspective, Radial, Rectification
 
 METHODS = {
     "conventional": (0.62, 0.9, 0.61),
-    "abraham": (0.30, 0.2, 0.98),
+    "abraham": (0.30, 0.2, 1.0),
     "hartley": (0.71, 1.4, 0.55),
     "fusiello": (0.66, 1.1, 0.58),
-    "local-homography": (0.21, 0.06, 0.99),
+    "local-homography": (0.21, 0.06, 1.0),
 }
 """Log distortion, distortion and coverage each method is about."""
+SHARES = (10, 20, 30, 40, 50, 60, 70, 75, 80, 90, 95, 100)
+PERSPECTIVE = ("conventional", "hartley", "fusiello")
+VIEWS_DEG = {"t265": 160.0, "sony-hdr-as200v": 130.0, "perspective-wide": 70.0}
 SCENES = ("street", "corridor", "room", "forest")
 RIGS = ("t265", "sony-hdr-as200v", "perspective-wide")
 SPHERE_M = 6.0
+
+
+NOTES = {
+    **dict.fromkeys(PERSPECTIVE, '{"projection": "perspective"}'),
+    "abraham": '{"focal_px": 412.25, "lens_law": "equidistant"}',
+}
+
+
+def view_columns(rig: str, method: str, factor: float = 1.0) -> dict[str, float]:
+    """Log distortion on growing shares of the view, next to none in the middle of perspective images."""
+    whole, _, kept = METHODS.get(method, (0.5, 0.5, 0.9))
+    power = 2.5 if method in PERSPECTIVE else 0.5
+    columns = {"view_kept": min(1.0, kept)}
+    for share in SHARES:
+        value = factor * whole * (share / 100) ** power
+        columns[f"log_distortion_{share}"] = value if share <= 100 * kept else float("nan")
+        columns[f"view_{share}_deg"] = VIEWS_DEG.get(rig, 120.0) * (share / 100) ** 0.5
+    return columns
 
 
 def make_row(scene: str, rig: str, pose: str, method: str, seed: int = 0, **changes: Any) -> dict[str, Any]:
@@ -62,10 +83,13 @@ def make_row(scene: str, rig: str, pose: str, method: str, seed: int = 0, **chan
         "row_error_rms_px": 1.3 * error,
         "row_error_below_1px": 1.0 if exact else 0.93,
         "row_error_source_mean_px": 1.1 * error,
+        "row_error_50_mean_px": 0.7 * error,
+        "row_error_95_mean_px": 0.9 * error if kept >= 0.95 else float("nan"),
         "row_error_matches": 8123.0,
         "log_distortion": log_distortion * jitter,
         "log_distortion_area": 0.7 * log_distortion * jitter,
         "log_distortion_anisotropy": 0.71 * log_distortion * jitter,
+        **view_columns(rig, method, jitter),
         "distortion_native": (native * 40 if rig == "t265" else native) * jitter,
         "distortion_rescaled": 0.6 * native * jitter,
         "distortion_stretched": 0.5 * native * jitter,
@@ -77,7 +101,7 @@ def make_row(scene: str, rig: str, pose: str, method: str, seed: int = 0, **chan
         "fit_s": 0.012 * jitter,
         "maps_s": 0.031,
         "warp_s": 0.0043,
-        "notes": '{"focal_px": 412.25, "lens_law": "equidistant"}' if method == "abraham" else "{}",
+        "notes": NOTES.get(method, "{}"),
     }
     return row | changes
 

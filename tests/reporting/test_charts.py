@@ -4,13 +4,16 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from matplotlib import rc_context
+from matplotlib.figure import Figure
 
+from rectbench.plugins.figure import FigureData
 from rectbench.reporting.charts.bars import bar_chart
+from rectbench.reporting.charts.coverage_curve import DistortionCoverage
 from rectbench.reporting.charts.grouped_bars import draw_bars
-from rectbench.reporting.charts.scatter import scatter
-from rectbench.reporting.style import looks
+from rectbench.reporting.style import STYLE, looks
 from rectbench.runs.run import read_run
-from tests.reporting.runs import METHODS, failed_row, make_row, quick_rows
+from tests.reporting.runs import METHODS, failed_row, fake_sources, make_row, quick_rows
 
 WriteRun = Callable[..., Path]
 LOOKS = looks(tuple(METHODS))
@@ -41,12 +44,40 @@ def test_seeds_become_one_bar_with_their_range(write_run: WriteRun) -> None:
     assert (bar.mean, bar.least, bar.largest) == (pytest.approx(0.4), 0.2, 0.7)
 
 
-def test_scatter_counts_what_it_cannot_show(write_run: WriteRun) -> None:
-    rows = quick_rows(scenes=("street", "room"), rigs=("t265",), poses=("exact",))
-    rows[2] = failed_row("street", "t265", "exact", "hartley")
-    data = scatter(read_run(write_run(rows)), "coverage_solid_angle", ("log_distortion",))
-    assert data.missing == {m: int(m == "hartley") for m in data.methods}
-    assert len(data.panels[0]["hartley"]) == 1
+def drawn_curves(folder: Path) -> Figure:
+    run = read_run(folder)
+    given = FigureData(run, run, fake_sources(), looks(run.methods))
+    (drawing,) = DistortionCoverage().drawings(given)
+    return drawing.draw()
+
+
+def test_each_rig_has_a_panel_on_common_axes(write_run: WriteRun) -> None:
+    rigs = tuple(f"rig-{i}" for i in range(10))
+    figure = drawn_curves(write_run([make_row("none", rig, "exact", m) for rig in rigs for m in METHODS]))
+    panels = [ax for ax in figure.axes if ax.axison]
+    assert [ax.get_title() for ax in panels] == list(rigs)
+    assert len({ax.get_ylim() for ax in panels}) == len({ax.get_xlim() for ax in panels}) == 1
+
+
+def test_a_curve_shows_the_numbers_and_ends_where_its_method_keeps_no_more(write_run: WriteRun) -> None:
+    row = make_row("none", "t265", "exact", "conventional", view_kept=0.61)
+    (ax,) = drawn_curves(write_run([row, make_row("none", "t265", "exact", "abraham")])).axes
+    conventional, abraham = (line for line in ax.lines if len(line.get_xdata()) > 2)
+    assert list(conventional.get_xdata()) == [10, 20, 30, 40, 50, 60]
+    assert list(abraham.get_xdata())[-1] == 100
+    assert conventional.get_ydata()[-1] == pytest.approx(row["log_distortion_60"])
+
+
+def test_the_view_of_a_share_stands_below_it_in_degrees(write_run: WriteRun) -> None:
+    row = make_row("none", "t265", "exact", "abraham", view_50_deg=81.6, view_95_deg=151.0)
+    (ax,) = drawn_curves(write_run([row])).axes
+    assert [label.get_text() for label in ax.get_xticklabels()][1:] == ["50\n82°", "95\n151°"]
+
+
+def test_a_method_without_a_curve_says_so_in_the_legend(write_run: WriteRun) -> None:
+    rows = [make_row("none", "t265", "exact", "abraham"), failed_row("none", "t265", "exact", "hartley")]
+    (legend,) = drawn_curves(write_run(rows)).legends
+    assert [text.get_text() for text in legend.get_texts()] == ["abraham", "hartley (no curve)"]
 
 
 def test_a_built_in_method_looks_the_same_whatever_runs_beside_it() -> None:
@@ -64,3 +95,16 @@ def test_more_methods_than_colours_are_still_told_apart() -> None:
     assert len({(look.colour, look.hatch) for look in many}) == 40
     assert len({(look.colour, look.marker) for look in many}) == 40
     assert len({look.colour for look in list(many)[:13]}) == 13
+
+
+def test_long_names_stay_within_the_page(write_run: WriteRun) -> None:
+    options = [f'{{"law":"{law}"}}' for law in ("equidistant", "stereographic", "equisolid", "orthographic")]
+    rows = [
+        make_row("none", rig, "exact", "abraham", options=given) for rig in ("a", "b") for given in options
+    ]
+    with rc_context(fname=STYLE):
+        figure = drawn_curves(write_run(rows))
+        figure.draw_without_rendering()
+    box = figure.legends[0].get_window_extent()
+    assert box.x0 >= 0
+    assert box.x1 <= figure.bbox.width

@@ -62,7 +62,7 @@ def manifest(folder: Path) -> dict[str, str]:
 def test_a_figure_in_one_file_is_drawn_and_stands_on_the_page(
     write_run: WriteRun, sources: Sources, tmp_path: Path
 ) -> None:
-    folder = write_run(ROWS, figures=["scatter", mine(tmp_path, topic="What is kept")])
+    folder = write_run(ROWS, figures=["coverage-curve", mine(tmp_path, topic="What is kept")])
     text = write_report(folder, sources=sources).read_text()
     assert all((folder / f"figures/kept.{extension}").is_file() for extension in EXTENSIONS)
     assert "Shares of the view." in text
@@ -72,7 +72,7 @@ def test_a_figure_in_one_file_is_drawn_and_stands_on_the_page(
 def test_a_figure_is_drawn_again_where_its_file_has_changed(
     write_run: WriteRun, sources: Sources, tmp_path: Path
 ) -> None:
-    folder = write_run(ROWS, figures=["scatter", mine(tmp_path)])
+    folder = write_run(ROWS, figures=["coverage-curve", mine(tmp_path)])
     write_report(folder, sources=sources)
     before = manifest(folder)
     mine(tmp_path, last="# a remark")
@@ -94,7 +94,7 @@ def test_a_figure_is_drawn_again_where_its_file_has_changed(
 def test_a_broken_figure_says_why_and_costs_no_other(
     write_run: WriteRun, sources: Sources, tmp_path: Path, last: str, told: str
 ) -> None:
-    folder = write_run(ROWS, figures=[mine(tmp_path, last=last), "scatter"])
+    folder = write_run(ROWS, figures=[mine(tmp_path, last=last), "coverage-curve"])
     text = write_report(folder, sources=sources).read_text()
     assert text.count("could not be drawn") == 1
     assert told in text
@@ -104,7 +104,7 @@ def test_a_broken_figure_says_why_and_costs_no_other(
 def test_a_figure_whose_file_is_gone_says_so_on_the_page(
     write_run: WriteRun, sources: Sources, tmp_path: Path
 ) -> None:
-    folder = write_run(ROWS, figures=[str(tmp_path / "gone.py"), "scatter"])
+    folder = write_run(ROWS, figures=[str(tmp_path / "gone.py"), "coverage-curve"])
     text = write_report(folder, sources=sources).read_text()
     assert "there is no file" in text
     assert (folder / "figures/distortion-coverage.png").is_file()
@@ -117,8 +117,8 @@ def report(*figures: str) -> Report:
 
 
 def test_a_wrong_figure_stops_a_run_before_anything_runs(tmp_path: Path) -> None:
-    with pytest.raises(UnknownName, match="scatter"):
-        make_plan(report("scater"))
+    with pytest.raises(UnknownName, match="coverage-curve"):
+        make_plan(report("coverage-curv"))
     with pytest.raises(InvalidInput, match="no file"):
         make_plan(report(str(tmp_path / "gone.py")))
 
@@ -138,7 +138,7 @@ def test_a_figure_s_path_holds_from_any_folder(monkeypatch: pytest.MonkeyPatch, 
 
 
 def test_a_report_that_asks_for_none_gets_the_usual_ones() -> None:
-    assert usual_figures() == ("bars", "scatter", "critical-difference", "pairs", "maps")
+    assert usual_figures() == ("bars", "coverage-curve", "critical-difference", "pairs", "maps")
 
 
 def test_each_built_in_figure_lies_in_a_file_of_its_name() -> None:

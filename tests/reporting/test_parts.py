@@ -29,7 +29,7 @@ OURS = "local-homography"
 DEPTH = {"reconstruction_density": 0.9, "reconstruction_completeness": 0.8, "dense_bad_2px": 0.2}
 POSE = {"pose_rotation_error_deg": 0.02, "pose_rotation_sigma_deg": 0.01, "pose_inliers": 300.0}
 TIMES = {"pose_s": 0.9, "fit_s": 0.02, "warp_s": 0.06, "total_s": 0.98}
-KINDS = ["bars", "scatter", "pairs", "maps", "energy", "squares", "clouds"]
+KINDS = ["bars", "coverage-curve", "pairs", "maps", "energy", "squares", "clouds"]
 CLAIM = {
     "name": "Least distortion",
     "says": "It is the least of all, by ±0 %.",
@@ -102,9 +102,7 @@ def records(table: Table) -> list[dict[str, str]]:
 
 
 def test_every_kind_of_figure_is_there_once_under_its_part_s_name(reported: Path) -> None:
-    stems = {
-        f"{kind}-fisheye" for kind in ("row-error", "distortion", "log-distortion", "distortion-coverage")
-    }
+    stems = {f"{kind}-fisheye" for kind in ("row-error", "distortion", "distortion-coverage")}
     stems |= {f"{k}-fisheye-t265" for k in ("rectified", "distortion-map", "squares", "energy", "clouds")}
     stems |= {"starts", "timing"}
     found = {path.name for path in (reported / "figures").iterdir()} - {"manifest.json"}
@@ -114,7 +112,10 @@ def test_every_kind_of_figure_is_there_once_under_its_part_s_name(reported: Path
 def test_every_table_is_there_once_under_its_part_s_name(reported: Path) -> None:
     stems = {"claims", "claims-measured", "claims-by-rig-least-distortion", "source-parts", "failures"}
     stems |= {"starts", "timing", "pair-timing-street-t265"}
-    stems |= {f"{k}-fisheye" for k in ("distortion", "row-error", "pose", "reconstruction", "energy")}
+    stems |= {
+        f"{k}-fisheye"
+        for k in ("log-distortion", "distortion", "row-error", "coverage", "pose", "reconstruction", "energy")
+    }
     stems |= {"main-fisheye-estimated", "pair-fisheye-street-t265", "pair-fisheye-room-t265"}
     assert {path.stem for path in (reported / "tables").iterdir()} == stems
 
@@ -157,7 +158,7 @@ def test_options_of_one_part_do_not_rename_a_method_in_another(write_run: WriteR
 def test_variants_of_a_start_stay_methods_where_no_study_is_asked_for(write_run: WriteRun) -> None:
     rows = [row | {"group": ""} for row in (start_row("street", draw, 1.0) for draw in range(2))]
     names = {table.name for table in all_tables(read_run(write_run(rows)))}
-    assert names == {"main-estimated", "distortion", "pair-street-t265"}
+    assert names == {"main-estimated", "log-distortion", "distortion", "coverage", "pair-street-t265"}
 
 
 def test_a_pose_that_methods_share_is_counted_once(write_run: WriteRun) -> None:

@@ -74,7 +74,6 @@ def contents(folder: Path) -> dict[str, bytes]:
 def test_the_contract_s_files_are_there(reported: Path) -> None:
     figures = {
         "row-error-perturbed",
-        "log-distortion",
         "distortion-native",
         "distortion-rescaled",
         "distortion-coverage",
@@ -88,7 +87,16 @@ def test_the_contract_s_files_are_there(reported: Path) -> None:
         "manifest.json",
         *(f"{name}.{extension}" for name in figures for extension in ("pdf", "svg", "png")),
     }
-    tables = {"main-exact", "main-perturbed", "distortion", "failures"}
+    tables = {
+        "main-exact",
+        "main-perturbed",
+        "rigs",
+        "log-distortion",
+        "distortion",
+        "row-error",
+        "coverage",
+        "failures",
+    }
     tables |= {"pair-street-t265", "pair-street-perspective-wide"}
     assert {p.name for p in (reported / "tables").iterdir()} == {
         f"{name}.{extension}" for name in tables for extension in ("csv", "md", "tex")
@@ -166,20 +174,21 @@ def test_what_has_not_changed_is_not_drawn_again(reported: Path) -> None:
 
     write_report(reported, sources=fake_sources(160), progress=Counted())
     assert {p: p.stat().st_mtime_ns for p in (reported / "figures").iterdir()} == before
-    assert steps == [9] * 9
+    assert steps == [8] * 8
 
 
 def test_changed_numbers_are_drawn_again_and_leftovers_removed(write_run: WriteRun, sources: Sources) -> None:
     rows = quick_rows(scenes=("street", "room"), rigs=("t265",), poses=("perturbed",), methods=("abraham",))
     rows = slim(rows)
-    folder = write_run(rows, figures=["bars"])
+    folder = write_run(rows, figures=["coverage-curve"])
     write_report(folder, sources=sources)
-    old = (folder / "figures/log-distortion.png").read_bytes()
+    old = (folder / "figures/distortion-coverage.png").read_bytes()
     (folder / "tables/mine.csv").write_text("kept")
     write_report(
-        write_run([r | {"log_distortion": 0.9} for r in rows[:1]], figures=["bars"]), sources=sources
+        write_run([r | {"log_distortion_50": 0.9} for r in rows[:1]], figures=["coverage-curve"]),
+        sources=sources,
     )
-    assert (folder / "figures/log-distortion.png").read_bytes() != old
+    assert (folder / "figures/distortion-coverage.png").read_bytes() != old
     assert not (folder / "tables/pair-room-t265.csv").exists()
     assert (folder / "tables/mine.csv").read_text() == "kept"
 
@@ -190,7 +199,7 @@ def test_a_run_whose_cells_failed_still_has_its_report(
 ) -> None:
     rows = quick_rows(scenes=("street",), rigs=("t265",), poses=("exact",))
     rows = [failed_row("street", "t265", "exact", r["method"]) if r["method"] in failing else r for r in rows]
-    page = write_report(write_run(slim(rows), figures=["bars", "scatter", "maps"]), sources=sources)
+    page = write_report(write_run(slim(rows), figures=["bars", "coverage-curve", "maps"]), sources=sources)
     words = " ".join(Page(page).words)
     assert f"{len(failing)} of 5 cells hold no measurement" in words
     assert "0/1" in words
@@ -236,7 +245,7 @@ def test_a_folder_without_a_run_is_refused_and_left_alone(write_run: WriteRun, m
 
 def test_a_damaged_manifest_only_costs_time(write_run: WriteRun, sources: Sources) -> None:
     rows = quick_rows(scenes=("street",), rigs=("t265",), poses=("exact",), methods=("abraham",))
-    folder = write_run(rows, figures=["scatter"])
+    folder = write_run(rows, figures=["coverage-curve"])
     write_report(folder, sources=sources)
     (folder / "figures/manifest.json").write_text('{"figures": 3')
     write_report(folder, sources=sources)

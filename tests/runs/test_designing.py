@@ -83,6 +83,30 @@ def test_two_rigs_are_too_few_to_plan_from(tmp_path: Path) -> None:
     assert table["rigs_needed"].isna().all()
 
 
+def test_pairs_without_a_scene_need_none(
+    tmp_path: Path, shell: Shell, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    save_run(Path("runs/quick"), [row | {"scene": "none"} for row in rows() if row["scene"] == "room"])
+    table = rb.plan("quick").table
+    assert (table["scenes"] == 0).all()
+    assert table["scenes_needed"].isna().all()
+    code, out, _ = shell("plan", "quick")
+    assert code == 0
+    assert "No scene is in these pairs" in out
+    assert "or scenes" not in out
+
+
+def test_the_verb_says_where_there_are_too_few_rigs(
+    tmp_path: Path, shell: Shell, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    save_run(Path("runs/quick"), rows(RIGS[:2]))
+    code, out, _ = shell("plan", "quick")
+    assert code == 3
+    assert out.count("2 rigs in common: too few to plan from") == 3
+
+
 def test_methods_are_compared_on_the_rigs_that_both_have(tmp_path: Path) -> None:
     given = [r for r in rows() if not (r["method"] == "abraham" and r["rig"] in RIGS[:2])]
     given += [failed_row(scene, RIGS[0], "exact", "abraham") for scene in SCENES]

@@ -9,6 +9,7 @@ import pytest
 import rectbench as rb
 from rectbench.statistics.components import Level, Spread
 from rectbench.statistics.design import Needs, units_needed
+from rectbench.statistics.intervals import mean_interval
 from rectbench.statistics.paired import better
 from rectbench.statistics.power import power, resolved, variance_factors
 from rectbench.types import FloatArray
@@ -40,6 +41,14 @@ def test_components_are_unbiased_where_scenes_have_unequally_many_seeds() -> Non
     of_seeds = 0.6**2 * np.mean(1 / seeds) / 4
     found = mean_components(Bench(1.0, 0.8, 0.6, seeds))
     assert found == pytest.approx([1 + 0.64 / 4 + of_seeds, 0.64 / 4, of_seeds], rel=0.12)
+
+
+def test_the_interval_of_a_mean_difference_is_that_of_the_units_values() -> None:
+    leaves = Bench.balanced(5, 1.0, 0.8, seed=0.6).leaves(np.random.default_rng(0), 1)[0, 0]
+    found, expected = Spread.of(labelled(leaves)).interval, mean_interval(unit_values(leaves))
+    assert (found.estimate, found.low, found.high) == pytest.approx(
+        (expected.estimate, expected.low, expected.high)
+    )
 
 
 def test_what_has_no_second_one_is_unknown_and_counts_to_the_level_above() -> None:

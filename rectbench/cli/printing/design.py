@@ -30,7 +30,14 @@ def show_design(found: Design) -> None:
         levels = [level for level in NESTED if (told[f"{level}s"] > 1).any()]
         headings = [f"or {level}s" for level in levels]
         table = plain_table(
-            "A", "B", "rigs", "A / B", "told from", f"rigs for {100 * found.detect:.3g} %", *headings
+            "A",
+            "B",
+            "rigs",
+            "A / B",
+            "95 % interval",
+            "told from",
+            f"rigs for {100 * found.detect:.3g} %",
+            *headings,
         )
         for row in rows.to_dict("records"):
             table.add_row(row["a"], row["b"], str(row["rigs"]), *_entries(row, levels))
@@ -55,6 +62,7 @@ def _entries(row: Mapping[Hashable, Any], levels: list[str]) -> Iterator[str]:
         yield row["reason"]
         return
     yield percent(row["ratio"])
+    yield f"{percent(row['low'])} to {percent(row['high'])}"
     yield percent(row["resolves"]).lstrip("+")
     yield _number(row["rigs_needed"], "over a million")
     for level in levels:
@@ -77,6 +85,9 @@ def _remarks(told: pd.DataFrame, tests: int) -> Iterator[str]:
     low, high = variance_factors(rigs)
     yield f"How rigs differ is known from {rigs} of them: it may take {low:.2g} to {high:.2g} times as many."
     for level in NESTED:
+        if level == "scene" and not told["scenes"].any():
+            yield "No scene is in these pairs: what is compared is a property of rig and motion."
+            continue
         count, share = int(told[f"{level}s"].median()), told[f"{level}s_share"].max()
         part = f"{_part(share)} of the variance between rigs"
         if pd.isna(share):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Collection
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
@@ -11,13 +12,18 @@ from rich.table import Table
 from rich.text import Text
 
 from rectbench.cli.printing.screen import console, plain_table
-from rectbench.reporting.tables.tabulation import main_tables
+from rectbench.reporting.tables.main_tables import INTERVAL, main_tables
 from rectbench.runs.run import read_run
 from rectbench.statistics.intervals import Interval
 
 if TYPE_CHECKING:
+    from rectbench.reporting.tables.table import Table as Summary
     from rectbench.runs.comparing import Comparison
     from rectbench.runs.gating import Gating
+
+_HEADING_LETTERS = 11
+_BETWEEN = 3
+"""Letters between columns."""
 
 
 def show_summary(folder: Path) -> None:
@@ -25,22 +31,42 @@ def show_summary(folder: Path) -> None:
     screen, found = console(), read_run(folder)
     page_only = {column.key for column in found.catalogue.shown("page")}  # they make it too wide
     for summary in main_tables(found):
-        caption = " ".join([summary.caption, *summary.notes])
-        table = Table(title=summary.title, caption=caption, box=SIMPLE_HEAD, pad_edge=False)
-        shown = [i for i, heading in enumerate(summary.headings) if heading.key not in page_only]
-        for i in shown:
-            heading = summary.headings[i]
-            # On a narrow screen the headings are folded, never the numbers.
-            widest = max(len(row[i].text) for row in summary.rows)
-            side: Literal["left", "right"] = "right" if heading.numeric else "left"
-            table.add_column(Text(heading.text), justify=side, min_width=widest)  # [px] is no markup
-        for row in summary.rows:
-            table.add_row(*(Text(row[i].text, style="bold" if row[i].best else "") for i in shown))
-        screen.print(table)
+        screen.print(Text(summary.title, style="bold"))
+        screen.print(Text(summary.caption))
+        screen.print(_as_wide_as(screen.width, summary, page_only))
+        for note in summary.notes:
+            screen.print(Text(note))
+        screen.print()
     for failure in found.failures:
         cell = f"{failure.method} on {failure.scene}/{failure.rig}/{failure.motion}/{failure.pose}"
         screen.print(Text(f"{failure.status}: {cell}: {failure.reason}", style="yellow"))
     screen.print(f"{len(found.results)} cells; page: {folder / 'index.html'}", soft_wrap=True)
+
+
+def _as_wide_as(width: int, summary: Summary, page_only: Collection[str]) -> Table:
+    """The columns for a terminal, as many as it has room for: headings are folded, never the numbers.
+
+    Intervals stand on the page; here they would press the numbers.
+    """
+    shown = [
+        i
+        for i, heading in enumerate(summary.headings)
+        if heading.key not in page_only and not heading.key.endswith(INTERVAL)
+    ]
+    table = Table(box=SIMPLE_HEAD, pad_edge=False)
+    used: list[int] = []
+    for i in shown:
+        heading = summary.headings[i]
+        lines = textwrap.wrap(heading.text, _HEADING_LETTERS)
+        widest = max(map(len, [*lines, *(row[i].text for row in summary.rows)]))
+        if sum(used) + widest + _BETWEEN > width:
+            break
+        used.append(widest + _BETWEEN)
+        side: Literal["left", "right"] = "right" if heading.numeric else "left"
+        table.add_column(Text("\n".join(lines)), justify=side, width=widest)  # Text: [px] is no markup
+    for row in summary.rows:
+        table.add_row(*(Text(row[i].text, style="bold" if row[i].best else "") for i in shown[: len(used)]))
+    return table
 
 
 def show_gating(found: Gating) -> None:

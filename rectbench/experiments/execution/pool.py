@@ -34,12 +34,17 @@ STARTS = 2
 
 @dataclass(frozen=True)
 class Job:
-    """A call for a worker; `groups` name what it shares with others, the most telling first."""
+    """A call for a worker.
+
+    `groups` name what it shares with others, the most telling first; `after` is the place of the job that
+    has to end well before it begins.
+    """
 
     call: Callable[..., Outcome]
     arguments: tuple[Any, ...]
     timeout_s: float
     groups: tuple[Hashable, ...] = ()
+    after: int | None = None
 
 
 @dataclass
@@ -85,10 +90,10 @@ class _Slot:
 
 
 class Workers:
-    """A fixed number of worker processes; a context manager that leaves none behind."""
+    """Up to `count` processes, started when there is work; a context manager that leaves none behind."""
 
     def __init__(self, count: int, limits: worker.Limits) -> None:
-        self._count, self._limits = count, limits
+        self.count, self.limits = count, limits
         self._slots: list[_Slot] = []
 
     def __enter__(self) -> Workers:
@@ -101,16 +106,18 @@ class Workers:
             slot.close()
 
     def run(self, jobs: Sequence[Job]) -> Iterator[tuple[int, Outcome]]:
-        """The outcome of each job with its index, as they end."""
+        """The outcome of each job with its index, as they end; what waits for one that fails is dropped."""
         waiting = list(range(len(jobs)))
+        ended_well: set[int | None] = {None}
         starts = [0] * len(jobs)
-        while len(self._slots) < min(self._count, len(jobs)):
-            self._slots.append(_Slot(self._limits))
+        while len(self._slots) < min(self.count, len(jobs)):
+            self._slots.append(_Slot(self.limits))
         kills = _kernel_kills()
         while waiting or any(slot.future for slot in self._slots):
             for slot in self._slots:
-                if slot.future is None and waiting:
-                    index = self._next(slot, waiting, jobs)
+                ready = [index for index in waiting if jobs[index].after in ended_well]
+                if slot.future is None and ready:
+                    index = self._next(slot, ready, jobs)
                     waiting.remove(index)
                     starts[index] += 1
                     slot.begin(index, jobs[index])
@@ -119,13 +126,17 @@ class Workers:
                 slot.future = None
                 kills = _kernel_kills()
                 if outcome is not None:
+                    if outcome.ok:
+                        ended_well.add(job)
+                    else:
+                        waiting = [index for index in waiting if jobs[index].after != job]
                     yield job, outcome
                 elif starts[job] < STARTS:
                     waiting.insert(0, job)
                 else:
                     raise Unavailable("worker processes end before they begin; see the messages above")
 
-    def _next(self, slot: _Slot, waiting: list[int], jobs: Sequence[Job]) -> int:
+    def _next(self, slot: _Slot, ready: list[int], jobs: Sequence[Job]) -> int:
         """The job that shares most with the slot's last one, and next least with those of other slots."""
         others = {group for other in self._slots if other is not slot for group in other.groups}
 
@@ -137,7 +148,7 @@ class Workers:
                 index,
             )
 
-        return min(waiting, key=switching_cost)
+        return min(ready, key=switching_cost)
 
     def _ended(self) -> list[_Slot]:
         futures = [slot.future for slot in self._slots if slot.future]

@@ -1,9 +1,10 @@
-"""Runs a plan: what the store has is taken, pairs are rendered, then cells run; in plan order out."""
+"""Runs a plan: what the store has is taken, pairs are rendered, cells run; outcomes in plan order."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, replace
 
 from rectbench.errors import InvalidInput
@@ -12,11 +13,12 @@ from rectbench.experiments.execution.outcomes import Outcome
 from rectbench.experiments.execution.pool import Job, Workers
 from rectbench.experiments.execution.worker import Limits
 from rectbench.experiments.planning import Plan
+from rectbench.experiments.spec import Report
 from rectbench.experiments.tasks import CellTask
 from rectbench.pairs.opening import open_pair
 from rectbench.pairs.pair import Pair
-from rectbench.pairs.spec import RenderedSpec
-from rectbench.progress import Progress
+from rectbench.pairs.spec import PairSpec, RenderedSpec
+from rectbench.progress import Advance, Progress
 from rectbench.store.keys import digest
 from rectbench.store.store import Store
 
@@ -46,8 +48,8 @@ class Execution:
 
 def execute(
     plan: Plan,
+    workers: Workers,
     *,
-    jobs: int | None = None,
     dask: str | None = None,
     fresh: bool = False,
     progress: Progress | None = None,
@@ -56,17 +58,22 @@ def execute(
 
     Parameters
     ----------
-    jobs : worker processes; as many as there are cores by default. The outcomes do not depend on it.
+    workers : who renders and runs the cells. The outcomes do not depend on their number.
     dask : address of a dask.distributed scheduler that runs the cells in the place of local workers.
     fresh : make again what the store has of this plan.
     progress : where to tell how far it is; nowhere by default.
     """
-    count = checked_jobs(jobs)
-    threads = max(1, (os.cpu_count() or 1) // count)
-    runner = _Runner(plan, Store.default(), count, threads, progress or Progress())
+    runner = _Runner(plan, Store.default(), workers, progress or Progress())
     if fresh:
         runner.forget()
-    return Execution(plan, runner.outcomes(dask), count, threads, dask)
+    return Execution(plan, runner.outcomes(dask), workers.count, workers.limits.threads, dask)
+
+
+def workers_for(report: Report, jobs: int | None = None) -> Workers:
+    """Worker processes, one a core by default, within what a report allows; started when work is there."""
+    count = checked_jobs(jobs)
+    threads = max(1, (os.cpu_count() or 1) // count)
+    return Workers(count, Limits(threads, round(report.memory_gib * 2**30)))
 
 
 def checked_jobs(jobs: int | None) -> int:
@@ -81,10 +88,9 @@ def checked_jobs(jobs: int | None) -> int:
 class _Runner:
     """One run of a plan against a store."""
 
-    def __init__(self, plan: Plan, store: Store, jobs: int, threads: int, progress: Progress) -> None:
-        self.plan, self.store, self.jobs, self.progress = plan, store, jobs, progress
+    def __init__(self, plan: Plan, store: Store, workers: Workers, progress: Progress) -> None:
+        self.plan, self.store, self.workers, self.progress = plan, store, workers, progress
         self.pairs = {spec: open_pair(spec, store) for spec in plan.pairs}
-        self.limits = Limits(threads, round(plan.report.memory_gib * 2**30))
 
     def forget(self) -> None:
         """Drop from the store what this plan would find there."""
@@ -104,59 +110,81 @@ class _Runner:
             if dask is not None:
                 self._run_on_cluster(dask, found)
             else:
-                with Workers(self.jobs, self.limits) as workers:
-                    self._make_pairs(workers, found)
-                    self._run_cells(workers, found, alone=False)
-                with Workers(1, replace(self.limits, threads=self.jobs * self.limits.threads)) as worker:
-                    self._run_cells(worker, found, alone=True)
+                self._render_and_run(found)
+                self._run_alone(found)
         except KeyboardInterrupt:
             done = sum(outcome is not None for outcome in found)
             raise Interrupted(done, len(tasks)) from None
         return [outcome for outcome in found if outcome is not None]
 
-    def _run_cells(self, workers: Workers, found: list[Outcome | None], *, alone: bool) -> None:
-        """Run those cells without an outcome that are to run alone, or those that need not."""
-        tasks = self.plan.tasks
-        missing = [i for i, outcome in enumerate(found) if outcome is None and tasks[i].alone == alone]
-        if alone and not missing:
+    def _render_and_run(self, found: list[Outcome | None]) -> None:
+        """Render the pairs the store lacks, and run the cells of each that is there; not those to run alone.
+
+        The cells of a pair that cannot be made end as it did.
+        """
+        tasks, lacking = self.plan.tasks, self._lacking_pairs(found)
+        place: dict[PairSpec, int] = {spec: position for position, spec in enumerate(lacking)}
+        missing = [i for i, outcome in enumerate(found) if outcome is None and not tasks[i].alone]
+        jobs = [self._pair_job(spec) for spec in lacking]
+        jobs += [self._cell_job(tasks[index], place.get(tasks[index].pair)) for index in missing]
+        with ExitStack() as stack:
+            rendered = stack.enter_context(self.progress.stage("rendering", len(lacking)))
+            advance = stack.enter_context(self._cells_stage("cells", found, missing))
+            for position, outcome in self.workers.run(jobs):
+                if position >= len(lacking):
+                    found[missing[position - len(lacking)]] = outcome
+                    advance()
+                    continue
+                rendered()
+                if outcome.ok:
+                    continue
+                lost = replace(outcome, reason=f"rendering the pair: {outcome.reason}")
+                for index, task in enumerate(tasks):
+                    if found[index] is None and task.pair == lacking[position]:
+                        found[index] = lost
+                        advance()
+
+    def _run_alone(self, found: list[Outcome | None]) -> None:
+        """Run the cells that are to have the machine to themselves."""
+        missing = [index for index, outcome in enumerate(found) if outcome is None]
+        if not missing:
             return
-        done = sum(outcome is not None for outcome in found)
-        stage = "cells, one at a time" if alone else "cells"
-        with self.progress.stage(stage, done + len(missing)) as advance:
-            for _ in range(done):
-                advance()
-            for position, outcome in workers.run([self._cell_job(tasks[index]) for index in missing]):
+        count, limits = self.workers.count, self.workers.limits
+        jobs = [self._cell_job(self.plan.tasks[index]) for index in missing]
+        with (
+            Workers(1, replace(limits, threads=count * limits.threads)) as worker,
+            self._cells_stage("cells, one at a time", found, missing) as advance,
+        ):
+            for position, outcome in worker.run(jobs):
                 found[missing[position]] = outcome
                 advance()
 
-    def _make_pairs(self, workers: Workers, found: list[Outcome | None]) -> None:
-        """Render the pairs the store lacks; the cells of one that cannot be made end as it did."""
-        # A pair with images is made even if its rows are all known: the report's pictures show it.
+    @contextmanager
+    def _cells_stage(
+        self, title: str, found: Sequence[Outcome | None], missing: Sequence[int]
+    ) -> Iterator[Advance]:
+        """A stage of all cells that are known or to be run now, the known ones done."""
+        done = sum(outcome is not None for outcome in found)
+        with self.progress.stage(title, done + len(missing)) as advance:
+            for _ in range(done):
+                advance()
+            yield advance
+
+    def _lacking_pairs(self, found: Sequence[Outcome | None]) -> list[RenderedSpec]:
+        """The pairs to be rendered; one with images even if its rows are known: the report shows it."""
         wanted = dict.fromkeys(
             task.pair
             for task, outcome in zip(self.plan.tasks, found, strict=True)
             if isinstance(task.pair, RenderedSpec) and (outcome is None or task.pair.images)
         )
-        missing = [spec for spec in wanted if not self.pairs[spec].is_made]
-        if not missing:
-            return
-        failed = {}
-        with self.progress.stage("rendering", len(missing)) as advance:
-            for position, outcome in workers.run([self._pair_job(spec) for spec in missing]):
-                if not outcome.ok:
-                    failed[missing[position]] = outcome
-                advance()
-        for index, task in enumerate(self.plan.tasks):
-            if found[index] is None and task.pair in failed:
-                pair = failed[task.pair]
-                found[index] = replace(pair, reason=f"rendering the pair: {pair.reason}")
+        return [spec for spec in wanted if not self.pairs[spec].is_made]
 
     def _pair_job(self, spec: RenderedSpec) -> Job:
         arguments = (spec, self.store.root)
         return Job(run_pair, arguments, self.plan.report.render_timeout_s, ((spec.scene_source, spec.seed),))
 
-    def _cell_job(self, task: CellTask) -> Job:
-        return Job(run_cell, (task, self.store.root), self.plan.report.timeout_s, (task.pair,))
+    def _cell_job(self, task: CellTask, after: int | None = None) -> Job:
+        return Job(run_cell, (task, self.store.root), self.plan.report.timeout_s, (task.pair,), after)
 
     def _run_on_cluster(self, address: str, found: list[Outcome | None]) -> None:
         from rectbench.experiments.execution.cluster import run_on_cluster
@@ -169,7 +197,7 @@ class _Runner:
             address,
             [(task, digest(shaping)) for task, shaping in zip(tasks, inputs, strict=True)],
             timeout_s=report.timeout_s + report.render_timeout_s,  # the first cell of a pair renders it
-            limits=self.limits,
+            limits=self.workers.limits,
         )
         with self.progress.stage("cells", len(missing)) as advance:
             for position, outcome in ended:

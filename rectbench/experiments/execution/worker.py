@@ -1,4 +1,4 @@
-"""What a worker process does before its first task: leash, limits, threads, warm libraries."""
+"""What a worker process does before its first task: leash, limits, threads, silence, warm libraries."""
 
 from __future__ import annotations
 
@@ -7,9 +7,11 @@ import os
 import resource
 import signal
 import sys
+import warnings
 from dataclasses import dataclass
 
-THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+ADDING_THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
+"""What says how many threads BLAS and OpenMP add up with, to those that are loaded later."""
 _PR_SET_PDEATHSIG = 1
 
 
@@ -18,6 +20,7 @@ class Limits:
     """What one worker may use."""
 
     threads: int
+    """Of OpenCV and Dr.Jit, whose results do not depend on it."""
     memory_bytes: int
 
 
@@ -32,9 +35,24 @@ def restrict(limits: Limits) -> None:
     """Hold this process to its limits, and load what every cell needs under them."""
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     _limit_memory(limits.memory_bytes)
-    for variable in THREAD_VARIABLES:
-        os.environ[variable] = str(limits.threads)
+    _add_up_alike()
+    silence_warnings()
     _warm_up(limits.threads)
+
+
+def silence_warnings() -> None:
+    """Keep Python's warnings from the user's terminal, unless Python was asked to show them (-W)."""
+    if not sys.warnoptions:
+        warnings.simplefilter("ignore")
+
+
+def _add_up_alike() -> None:
+    """Hold BLAS and OpenMP to one thread: several split sums by their number, and rows would depend on it."""
+    for variable in ADDING_THREADS:
+        os.environ[variable] = "1"
+    import threadpoolctl  # not above: the variables are to be set before anything loads a BLAS
+
+    threadpoolctl.threadpool_limits(limits=1)
 
 
 def _die_with(parent: int) -> None:
@@ -57,7 +75,6 @@ def _limit_memory(size: int) -> None:
 
 def _warm_up(threads: int) -> None:
     """Import now what every cell needs, so that no cell's time-out pays for it."""
-    # Imported here and not above: NumPy's BLAS reads the thread variables when it is loaded.
     import cv2
 
     from rectbench import llvm

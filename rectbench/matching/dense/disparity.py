@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import logging
 import math
+from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -263,9 +265,21 @@ def _smoothed(disparity: FloatMap, guide: Image) -> FloatMap:
     count = np.maximum(count, 1e-6)
     variance = np.maximum(squares / count - np.square(total / count), 0)
     weight = known * np.exp(-variance / SURE_DEVIATION_PX**2)
-    solver = cv2.ximgproc.createFastGlobalSmootherFilter(guide, SMOOTHING, GREY_SIGMA)
+    with _in_one_piece():
+        solver = cv2.ximgproc.createFastGlobalSmootherFilter(guide, SMOOTHING, GREY_SIGMA)
     smooth: FloatMap = solver.filter(values * weight) / np.maximum(solver.filter(weight), 1e-6)
     return smooth
+
+
+@contextmanager
+def _in_one_piece() -> Iterator[None]:
+    """A smoother made here does not split the image by the number of threads, which its last digits tell."""
+    threads = cv2.getNumThreads()
+    cv2.setNumThreads(1)
+    try:
+        yield
+    finally:
+        cv2.setNumThreads(threads)
 
 
 def _without_speckles(disparity: FloatMap) -> FloatMap:

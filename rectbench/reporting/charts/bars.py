@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from itertools import product
 
+from rectbench.pairs.spec import NO_SCENE
 from rectbench.plugins.figure import Drawing, Figure, FigureData
 from rectbench.plugins.result import Part, Result
 from rectbench.reporting.charts.grouped_bars import Bar, BarChart, bar_drawing, bar_of
@@ -12,7 +13,6 @@ from rectbench.reporting.names import pair_labels
 
 _BOUNDED = ("distortion_rescaled", "distortion_stretched")
 """Never far above 1, as every image may be shrunk: a logarithmic axis would hide a third more or less."""
-_RANKING = "Log distortion on each pair: free of scale, and what methods are ranked by."
 _CAPTIONS = {
     "distortion_native": "The paper's distortion L on each pair, each method at its authors' own scale.",
     "distortion_rescaled": "The same after the one scale of the image that is best for each method.",
@@ -27,8 +27,13 @@ class Bars(Figure):
     usual = 1
 
     def drawings(self, given: FigureData) -> Iterator[Drawing]:
-        """A chart a metric; of a part of a report, or of photographs, all ways to measure a thing in one."""
+        """A chart a metric; of a part of a report, or of photographs, all ways to measure a thing in one.
+
+        None of pairs without a scene: they are many, and curves tell more of them.
+        """
         part = given.part
+        if part.scenes == (NO_SCENE,):
+            return iter(())
         return _by_pair(given) if part.group or not part.has_truth else _by_scene(given)
 
 
@@ -39,7 +44,7 @@ def _by_scene(given: FigureData) -> Iterator[Drawing]:
             chart = bar_chart(part, "row_error_mean_px", pose, reference=1.0)
             caption = "Mean row error of true correspondences on each pair."
             yield bar_drawing(chart, given, "row-error", f"Row error, {pose} pose", caption, pose)
-    for key, caption in {part.catalogue.ranking.key: _RANKING, **_CAPTIONS}.items():
+    for key, caption in _CAPTIONS.items():
         if key in part.metrics:
             chart = bar_chart(part, key, part.geometric_pose)
             yield bar_drawing(chart, given, key, part.catalogue.column(key).heading.capitalize(), caption)
@@ -62,10 +67,6 @@ def _by_pair(given: FigureData) -> Iterator[Drawing]:
         if chart.linear:
             caption += " Rescaled and stretched have a linear axis from 0."
         yield bar_drawing(chart, given, "distortion", "Distortion by protocol", caption)
-    ranking = part.catalogue.ranking
-    if ranking.key in part.metrics:
-        chart = pair_chart(part, ranking.heading, {ranking.key: ""}, pose)
-        yield bar_drawing(chart, given, ranking.key, ranking.heading.capitalize(), _RANKING)
 
 
 def bar_chart(run: Part, key: str, pose: str, reference: float | None = None) -> BarChart:

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     import matplotlib.figure
     import pandas as pd
     from matplotlib.axes import Axes
+    from matplotlib.collections import PathCollection
+    from matplotlib.text import Text
 
 LEAST_RIGS = 10
 """With fewer, ranks say too little to be drawn."""
@@ -67,7 +69,8 @@ class CriticalDifference(Figure):
             "Critical difference",
             f"Mean rank of each method by {data.heading} over {data.rigs} rigs, 1 being the best. Methods "
             "that a bar joins are not told apart at 5 % (Friedman's test, then Nemenyi's; Demšar 2006): "
-            "their mean ranks are nearer to each other than the critical difference CD."
+            "their mean ranks are nearer to each other than the critical difference CD. Places see no "
+            "ratios, and so tell less than the ranks of the table."
             f"{_lacking(data, 'shares the last place')}",
             data,
             lambda: draw_ranks(data, given.looks),
@@ -75,9 +78,9 @@ class CriticalDifference(Figure):
         yield Drawing(
             "practical-equivalence",
             "Practical equivalence",
-            f"How probable it is on such rigs that one method has the lower {data.heading}, or the other, or "
-            f"that they are less than {100 * EQUIVALENT:g} % apart (grey), the same in practice: Bayesian "
-            f"signed-rank test over {data.rigs} rigs (Benavoli et al. 2017)."
+            f"How probable it is that on rigs like these one method mostly has the lower {data.heading}, or "
+            f"the other, or that they are mostly less than {100 * EQUIVALENT:g} % apart (grey), the same in "
+            f"practice: Bayesian signed-rank test over {data.rigs} rigs (Benavoli et al. 2017)."
             f"{_lacking(data, 'is the worse one')}",
             data,
             lambda: draw_beliefs(data, given.looks),
@@ -126,12 +129,14 @@ def mean_ranks(data: Decided) -> tuple[dict[str, float], pd.DataFrame, float]:
 def draw_ranks(data: Decided, looks: Mapping[str, Look]) -> matplotlib.figure.Figure:
     """Draw mean ranks on a line, bars below methods that are not told apart, and the difference it takes."""
     from matplotlib.figure import Figure
-    from matplotlib.markers import MarkerStyle
+    from matplotlib.layout_engine import ConstrainedLayoutEngine
     from scikit_posthocs import critical_difference_diagram
 
     ranks, p, difference = mean_ranks(data)
-    figure = Figure(figsize=(PAGE_INCHES, 1.0), layout="constrained")
+    figure = Figure(figsize=(PAGE_INCHES, 1.0), layout=ConstrainedLayoutEngine(w_pad=0.08))
     ax = figure.subplots()
+    best, worst, last = min(ranks.values()), max(ranks.values()), len(ranks)
+    beside = 0.02 * last + max(best - 1, last - worst)  # so that names stand beyond both ends of the axis
     drawn = critical_difference_diagram(
         ranks,
         p,
@@ -143,30 +148,36 @@ def draw_ranks(data: Decided, looks: Mapping[str, Look]) -> matplotlib.figure.Fi
         marker_props={"s": 26},
         elbow_props={"linewidth": 0.9},
         crossbar_props={"color": INK, "linewidth": 2.4, "solid_capstyle": "butt"},
-        text_h_margin=0.05,
+        text_h_margin=beside,
     )
     for marks, label in zip(drawn["markers"], drawn["labels"], strict=True):
-        method = label.get_text()
-        style = MarkerStyle(looks[method].marker)
-        marks.set(paths=[style.get_path().transformed(style.get_transform())], edgecolor=INK, linewidth=0.6)
-        number, is_left = f"{ranks[method]:.2f}", label.get_horizontalalignment() == "right"
-        words = f"{method}  {number}\u00a0" if is_left else f"\u00a0{number}  {method}"
-        label.set(text=words, color=INK)
+        _finish(marks, label, ranks[label.get_text()], looks[label.get_text()].marker)
     lowest = min(float(line.get_ydata()[0]) for line in drawn["elbows"])
-    _scale(ax, difference, len(ranks), lowest)
+    ax.set_xlim(best - beside, worst + beside)
+    ax.set_ylim(lowest - 0.6, ABOVE)
+    ax.set_xticks(range(1, last + 1))
+    _add_difference(ax, difference)
     figure.set_figheight(ROW_INCHES * (ABOVE - lowest + 0.6))
     return figure
 
 
-def _scale(ax: Axes, difference: float, methods: int, lowest: float) -> None:
-    """The axis of ranks, and above it the critical difference as a bar."""
+def _finish(marks: PathCollection, label: Text, rank: float, marker: str) -> None:
+    """Give a method on the axis its own mark, and beside its name its mean rank."""
+    from matplotlib.markers import MarkerStyle
+
+    style = MarkerStyle(marker)
+    marks.set(paths=[style.get_path().transformed(style.get_transform())], edgecolor=INK, linewidth=0.6)
+    name, is_left = label.get_text(), label.get_horizontalalignment() == "right"
+    words = f"{name}  {rank:.2f}\u00a0" if is_left else f"\u00a0{rank:.2f}  {name}"
+    label.set(text=words, color=INK)
+
+
+def _add_difference(ax: Axes, difference: float) -> None:
+    """The critical difference as a bar above the axis of ranks, which is made visible."""
     ax.spines.top.set_visible(True)
     height = 0.66 * ABOVE
     ax.errorbar([1 + difference / 2], [height], xerr=difference / 2, color=INK, capsize=2.5, linewidth=1.0)
     ax.text(1 + difference, height, f"  CD {difference:.2f}", va="center", color=INK)
-    ax.set_xlim(1 - 0.02 * methods, methods + 0.02 * methods)
-    ax.set_ylim(lowest - 0.6, ABOVE)
-    ax.set_xticks(range(1, methods + 1))
 
 
 def draw_beliefs(data: Decided, looks: Mapping[str, Look]) -> matplotlib.figure.Figure:

@@ -8,13 +8,19 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from rectbench.pairs.spec import NO_SCENE
 from rectbench.plugins.metric import Column
 from rectbench.plugins.result import Result
 from rectbench.reporting.asked import methods_part, wanted_figures
 from rectbench.reporting.charts.starts import SAME_MINIMUM, Starts, start_study, study_method
 from rectbench.reporting.names import named, one_line, pair_labels, slug
+from rectbench.reporting.tables.belief_table import belief_table
+from rectbench.reporting.tables.captions import averages_text, capitalised
 from rectbench.reporting.tables.claims_tables import claims_tables
+from rectbench.reporting.tables.main_tables import is_ranked, main_tables
 from rectbench.reporting.tables.numbers import MISSING, three_digits
+from rectbench.reporting.tables.pair_tables import pair_tables
+from rectbench.reporting.tables.rig_tables import distortion_tables, rig_table
 from rectbench.reporting.tables.run_tables import failures_table, photograph_tables
 from rectbench.reporting.tables.table import (
     Entry,
@@ -27,13 +33,10 @@ from rectbench.reporting.tables.table import (
     words,
 )
 from rectbench.reporting.tables.tabulation import (
-    distortion_table,
+    ALL_RIGS,
     heading,
-    is_ranked,
-    main_tables,
     measured,
     methods_table,
-    pair_tables,
     titled,
     topic_columns,
 )
@@ -41,6 +44,8 @@ from rectbench.runs.run import Run
 from rectbench.types import FloatArray
 
 _EXCESSES = {"least": 0.0, "median": 0.5, "largest": 1.0}
+_MOST_PAIRS = 8
+"""Tables of more have a section a rig."""
 _SAME_PLACE = 1e-6
 """A start that ends this little off another's L, relatively, ends in the same place."""
 
@@ -61,6 +66,7 @@ def all_tables(run: Run) -> Iterator[Table]:
 def _methods_tables(part: Run) -> Iterator[Table]:
     if is_ranked(part):
         yield from main_tables(part)
+        yield from filter(None, [rig_table(part), belief_table(part)])
     for topic in part.catalogue.topics:
         yield from _topic_tables(part, topic)
     yield from pair_tables(part)
@@ -69,15 +75,12 @@ def _methods_tables(part: Run) -> Iterator[Table]:
 def _topic_tables(part: Run, topic: str) -> Iterator[Table]:
     columns = topic_columns(part, topic)
     if topic == "Distortion":
-        yield from [distortion_table(part)] if is_ranked(part) else []
+        yield from distortion_tables(part) if is_ranked(part) else []
     elif topic == "Poses":
         yield from [pose_table(part)] if columns else []
     elif topic == "Time":
         yield from [timing_table(part)] if "timing" in wanted_figures(part) and columns else []
-    elif any(column.shown == "topic" for column in columns) and (
-        # In a run without parts the main table speaks of it, if of few of its columns.
-        part.group or not part.has_truth or all(column.shown == "topic" for column in columns)
-    ):
+    elif any(column.shown == "topic" for column in columns):
         yield from pairwise_tables(part, topic)
 
 
@@ -100,7 +103,7 @@ _WORDINGS = {
         "row-error",
         "Row error",
         "Of SIFT matches within 3 px of the pose's epipolar planes, and of true correspondences; {pose} "
-        "pose, averages over seeds.",
+        "pose.",
         "Of the corners of a calibration board, the measure to trust, where both images show one; and of "
         "SIFT matches that agree with one another on the pose in the images, whatever the calibration says.",
     ),
@@ -122,11 +125,11 @@ _WORDINGS = {
 
 
 def pairwise_tables(run: Run, topic: str) -> Iterator[Table]:
-    """A topic's columns over all pairs and on each; of photographs a table a pose.
+    """A topic's columns over all rigs and on each pair, of many on each rig; of photographs a table a pose.
 
     Methods that were measured, and have no number of the topic anywhere, are left out: it is not about them.
     """
-    usual = _Wording(slug(topic), slug(topic), topic, "{pose} pose, averages over seeds.")
+    usual = _Wording(slug(topic), slug(topic), topic, "{pose} pose.")
     wording = _WORDINGS.get(topic, usual)
     own = {column.key for column in run.catalogue.topics[topic]}
     unmeasured = {r.method for r in run.results if r.ok} - {
@@ -135,20 +138,25 @@ def pairwise_tables(run: Run, topic: str) -> Iterator[Table]:
     about = run.only(r for r in run.results if r.method not in unmeasured)
     columns = [*measured(about, map(run.catalogue.column, wording.beside)), *topic_columns(about, topic)]
     for pose in run.noisy_poses[:1] if run.has_truth else run.poses:
+        results = about.select(pose=pose)
         caption = wording.caption if run.has_truth else wording.of_photographs or wording.caption
         yield replace(
-            methods_table(about, columns, _by_pair(about, pose)),
+            methods_table(about, columns, _sections(about, pose)),
             kind=wording.kind,
             name=named(run, wording.stem, "" if run.has_truth else pose),
             title=titled(run, wording.title + ("" if run.has_truth else f" under the {pose} pose")),
-            caption=caption.format(pose=pose),
+            caption=" ".join([capitalised(caption.format(pose=pose)), averages_text(results, columns)]),
         )
 
 
-def _by_pair(run: Run, pose: str) -> dict[str, tuple[Result, ...]]:
+def _sections(run: Run, pose: str) -> dict[str, tuple[Result, ...]]:
+    """The results of all rigs, then of each pair; of each rig where the pairs are many, or have no scene."""
     results, labels = run.select(pose=pose), pair_labels(run)
-    by_pair = {one_line(label): run.select(results, place=place) for place, label in labels.items()}
-    return {"all pairs": results, **by_pair} if len(labels) > 1 else by_pair
+    if run.scenes == (NO_SCENE,) or len(labels) > _MOST_PAIRS:
+        single = {rig: run.select(results, rig=rig) for rig in run.rigs}
+    else:
+        single = {one_line(label): run.select(results, place=place) for place, label in labels.items()}
+    return {ALL_RIGS: results, **single} if len(single) > 1 else single
 
 
 def pose_table(run: Run) -> Table:

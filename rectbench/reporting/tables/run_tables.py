@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from rectbench.reporting.names import one_line, pair_labels
+from rectbench.reporting.tables.captions import counted
 from rectbench.reporting.tables.numbers import MISSING
 from rectbench.reporting.tables.table import (
     Entry,
@@ -15,7 +16,7 @@ from rectbench.reporting.tables.table import (
     text_heading,
     words,
 )
-from rectbench.reporting.tables.tabulation import counted, heading, measured
+from rectbench.reporting.tables.tabulation import heading, measured
 from rectbench.runs.record import FoundPhotographs
 from rectbench.runs.run import Run
 

@@ -10,7 +10,7 @@ import io
 import re
 import textwrap
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache, lru_cache
 
 from jinja2 import Environment, PackageLoader, Template
@@ -23,12 +23,16 @@ from rectbench.reporting.tables.numbers import MISSING, shown
 
 @dataclass(frozen=True)
 class Entry:
-    """One field: what is read (`text`), what is sorted and stored (`value`), and how it stands out."""
+    """One field: what is read (`text`), what is sorted and stored (`value`), and how it stands out.
+
+    `hint` is what the page tells under the pointer.
+    """
 
     text: str
     value: float | str | None = None
     best: bool = False
     failed: bool = False
+    hint: str = ""
 
     @property
     def stored(self) -> str:
@@ -115,7 +119,7 @@ def with_best(entries: Sequence[Entry], shown_as: Column, eligible: Sequence[boo
         return list(entries)
     winner = (min if shown_as.better == "lower" else max)(competing)[1]
     return [
-        Entry(entry.text, entry.value, best=may_win and entry.text == winner, failed=entry.failed)
+        replace(entry, best=may_win and entry.text == winner)
         for entry, may_win in zip(entries, eligible, strict=True)
     ]
 

@@ -1,0 +1,96 @@
+"""The main tables: methods by their key metrics, averaged over the rigs, in the order in which they stand."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from rectbench.plugins.metric import Column
+from rectbench.reporting.asked import methods_part
+from rectbench.reporting.names import named
+from rectbench.reporting.tables.captions import averages_text
+from rectbench.reporting.tables.numbers import MISSING
+from rectbench.reporting.tables.standings import Standing, behind_text, standing
+from rectbench.reporting.tables.summaries import Summary
+from rectbench.reporting.tables.table import Entry, Heading, Section, Table
+from rectbench.reporting.tables.tabulation import (
+    METHOD_HEADINGS,
+    NOT_OK_HEADING,
+    PARTIAL,
+    heading,
+    interval_text,
+    measured,
+    method_rows,
+    summaries_of,
+    titled,
+)
+from rectbench.runs.run import Run
+
+INTERVAL = "_interval"
+"""Ends the name of the column that holds another one's intervals."""
+
+
+def main_tables(run: Run) -> list[Table]:
+    """Methods by key metrics, averaged over every rig; one table a part and pose."""
+    return [
+        _main_table(methods, pose)
+        for part in run.parts
+        if (methods := methods_part(part)) and is_ranked(methods)
+        for pose in methods.poses
+    ]
+
+
+def is_ranked(run: Run) -> bool:
+    """Whether there is anything to rank methods by, or nothing at all to show but their failure."""
+    return not run.group or run.catalogue.ranking.key in run.metrics or not run.metrics
+
+
+def _main_table(run: Run, pose: str) -> Table:
+    results, ranking = run.select(pose=pose), run.catalogue.ranking
+    columns = [
+        column
+        for column in measured(run, run.catalogue.shown("summary", "page"))
+        if not (run.has_truth and column.without_truth)
+    ]
+    found = standing(summaries_of(run, results, columns), results, run.catalogue)
+    failing = any(not s.complete for s in found.summaries)
+    fields: list[tuple[Heading, list[Entry]]] = []
+    if found.ranks:
+        fields.append((_rank_heading(ranking), [_rank_entry(found, s) for s in found.summaries]))
+    rows = method_rows(found.summaries, columns, results, failing)
+    heads = [*METHOD_HEADINGS, *map(heading, columns), *[NOT_OK_HEADING] * failing]
+    for head, entries in zip(heads, zip(*rows, strict=True), strict=True):
+        fields.append((head, list(entries)))
+        if head.key == ranking.key and (intervals := _interval_field(found.summaries, ranking)):
+            fields.append(intervals)
+    scene = "scene" if run.has_truth else "photographed pair"
+    told = [found.design, found.order, averages_text(results, columns, scene)]
+    notes = [behind_text(found, run.catalogue), found.caveat, f"{PARTIAL}." if failing else ""]
+    return Table(
+        kind="main",
+        part=run.group,
+        name=named(run, "main", pose),
+        title=titled(run, f"Methods under the {pose} pose"),
+        caption=" ".join(filter(None, told)),
+        headings=tuple(head for head, _ in fields),
+        sections=(Section("", tuple(zip(*(entries for _, entries in fields), strict=True))),),
+        notes=tuple(filter(None, notes)),
+    )
+
+
+def _rank_heading(ranking: Column) -> Heading:
+    return Heading("rank", "rank", meaning=f"The places that the rigs leave possible, by {ranking.heading}.")
+
+
+def _rank_entry(found: Standing, summary: Summary) -> Entry:
+    text = found.ranks.get(summary.method, MISSING)
+    return Entry(text, text if text != MISSING else None)
+
+
+def _interval_field(summaries: Sequence[Summary], column: Column) -> tuple[Heading, list[Entry]] | None:
+    """The intervals of the ranking column; None where the rigs are too few for any."""
+    texts = [interval_text(s.averages[column.key], column) for s in summaries]
+    if not any(texts):
+        return None
+    meaning = f"Of {column.heading}, over rigs: where the mean over many more rigs of these kinds would lie."
+    head = Heading("95 % interval", f"{column.key}{INTERVAL}", meaning=meaning)
+    return head, [Entry(text or MISSING, text or None) for text in texts]

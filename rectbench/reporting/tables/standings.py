@@ -1,0 +1,114 @@
+"""Where methods stand: their order, their ranks as far as the rigs tell, and what is to be said of both."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from rectbench.plugins.catalogue import Catalogue
+from rectbench.plugins.metric import Column
+from rectbench.plugins.result import Result
+from rectbench.reporting.curves import KEPT, ranked_by, ranked_share
+from rectbench.reporting.tables.captions import listed
+from rectbench.reporting.tables.numbers import three_digits
+from rectbench.reporting.tables.summaries import Summary, averaged
+from rectbench.runs.units import by_rig, floor_of
+from rectbench.statistics.ranking import Ranking, rank, signed_rank_caveat
+
+_KEPT = Column(KEPT, "view kept")
+_TWICE = 2.0
+"""Ratios up to this are told as a difference in percent, larger ones as a factor."""
+
+
+@dataclass(frozen=True)
+class Standing:
+    """The methods of a table, best first.
+
+    Parameters
+    ----------
+    summaries : in their order: by the ranking column, behind them those without a number on every pair, the
+        fewer failures and the more of the view they keep the nearer.
+    ranks : the first and the last place of each method, as a reader sees them; empty where nothing is told.
+    design : what these rigs can tell apart, a sentence.
+    order : by what the methods stand in their order, a sentence.
+    behind : the methods without a number on every pair.
+    values : of the others, by method and rig.
+    caveat : what the rigs are too few for; empty where they are not.
+    """
+
+    summaries: tuple[Summary, ...]
+    ranks: Mapping[str, str]
+    design: str
+    order: str
+    behind: tuple[str, ...]
+    values: Mapping[str, Mapping[str, float]]
+    caveat: str
+
+
+def standing(summaries: Sequence[Summary], results: Sequence[Result], catalogue: Catalogue) -> Standing:
+    """Of the methods that are summarised, by the ranking column of their results."""
+    column = catalogue.ranking
+    values = by_rig(results, column)
+    found = rank(values, floor=floor_of(column), unit="rig")
+    rigs = {rig for numbers in values.values() for rig in numbers}
+    behind = {method for method, numbers in values.items() if not rigs or len(numbers) < len(rigs)}
+
+    def nearness(summary: Summary) -> tuple[bool, int, int, float, str]:
+        method = summary.method
+        if method not in behind:
+            return False, found.order.index(method), 0, 0.0, method
+        kept = averaged(_KEPT, [r for r in results if r.method == method]).value or 0.0
+        return True, summary.failed, -len(values[method]), -kept, method
+
+    ordered = tuple(sorted(summaries, key=nearness))
+    is_of_view = bool(rigs) or any(KEPT in r.metrics for r in results)
+    return Standing(
+        summaries=ordered,
+        ranks={method: _rank_text(*places) for method, places in found.ranks.items()},
+        design=_design_text(found) if rigs else "",
+        order=_order_text(found, catalogue) if len(behind) < len(ordered) else "",
+        behind=tuple(s.method for s in ordered if is_of_view and s.method in behind),
+        values={s.method: values[s.method] for s in ordered if s.method not in behind},
+        caveat=f"{caveat}." if (caveat := signed_rank_caveat(found.units, "rig")) and found.ranks else "",
+    )
+
+
+def _rank_text(first: int, last: int) -> str:
+    return str(first) if first == last else f"{first}–{last}"
+
+
+def _design_text(found: Ranking) -> str:
+    if found.reason:
+        return f"{found.reason[0].upper()}{found.reason[1:]}."
+    if found.resolves is None:
+        return ""
+    return (
+        f"These {found.units} rigs tell two methods apart, in four cases of five, from "
+        f"{_ratio_text(found.resolves)} on; a rank is an interval where they tell no more."
+    )
+
+
+def _ratio_text(ratio: float) -> str:
+    if not math.isfinite(ratio):
+        return "no difference"
+    if ratio < _TWICE:
+        return f"a difference of {three_digits(100 * (ratio - 1))} %"
+    return f"a factor of {three_digits(ratio)}"
+
+
+def _order_text(found: Ranking, catalogue: Catalogue) -> str:
+    return f"{'Ranked by' if found.ranks else 'In the order of'} {ranked_by(catalogue)}."
+
+
+def behind_text(found: Standing, catalogue: Catalogue) -> str:
+    """Why methods stand below the others without a rank; empty where none does."""
+    share, names = ranked_share(catalogue), listed(found.behind)
+    if not found.behind:
+        return ""
+    if share is None:
+        return f"Without {catalogue.ranking.heading} on every pair, and so without a rank: {names}."
+    return (
+        f"Not ranked, for they show less than {share} % of the view on some pair, or nothing: {names}. "
+        "They stand below, by how much they keep."
+    )
