@@ -68,8 +68,9 @@ def start_row(scene: str, draw: int, ratio: float, seed: int = 0) -> dict[str, A
     default = make_row(scene, "t265", "estimated", OURS, seed)
     identity = {k: v for k, v in default.items() if isinstance(v, str | int) and k != "notes"}
     options = json.dumps({"draw": draw, "start": "random"})
+    energy = ratio * default["distortion_native"]
     return grouped(
-        "starts", identity, options=options, distortion_native_grid=ratio * default["distortion_native"]
+        "starts", identity, options=options, distortion_native=energy, distortion_native_grid=energy
     )
 
 
