@@ -86,7 +86,7 @@ def measurements_table(judged: Sequence[Judged]) -> Table:
         "(p < 0.05).",
         headings=(
             text_heading("clause"),
-            text_heading("measured"),
+            text_heading("measured", wraps=True),
             Heading("mean", "mean"),
             Heading("from", "low", meaning="Lower end of the 95 % interval."),
             Heading("to", "high", meaning="Upper end of the 95 % interval."),
@@ -105,7 +105,7 @@ def measurements_table(judged: Sequence[Judged]) -> Table:
 def _measured_row(test: Measured) -> tuple[Entry, ...]:
     found, statement = test.interval, test.statement
     shown_as = _SHARE if statement.measure == "count" else _NUMBER
-    suffix = " %" if shown_as is _SHARE else ""
+    suffix = "\u00a0%" if shown_as is _SHARE else ""
     remarks = ["" if statement.judges else "to compare with", test.remark]
     if test.absent:
         remarks.append(f"no image, or none that shows that much, on {', '.join(test.absent)}")
