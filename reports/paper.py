@@ -141,6 +141,7 @@ report = rb.Report(
     seeds=(0, 1),
     quality="fast",
     spp=8,
+    timeout_s=300.0,
     claims=CLAIMS,
     source_parts=PARTS,
     stated_seconds={"pose": 6.0, "fit": 3.0, "warp": 6.0},

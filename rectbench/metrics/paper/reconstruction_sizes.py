@@ -21,6 +21,9 @@ MEGAPIXELS = (0.25, 0.5, 1.0)
 """Pixels of the left rectified image that show the source."""
 VIEWS = (0.5, 0.75, 0.95)
 """Shares of the view that are counted; a method that does not keep all of one has no number there."""
+LARGEST_FRAME = 3e6
+"""Pixels of a matched image, those that show nothing among them. Where more would be needed, as where a
+perspective image of a wide lens runs out into four points, there is no number."""
 WORKING_PIXELS = 6e6
 """An image is resampled at the source's resolution, though at no more pixels, and then made smaller: nothing
 aliases."""
@@ -72,7 +75,7 @@ class ReconstructionSizes(Metric):
 def sized(rect: Rectification) -> Iterator[tuple[float, Rectification, float]]:
     """Each of MEGAPIXELS, the rectification at a working size, and the pixels its frame is to be matched at.
 
-    Nothing where the left image shows nothing.
+    Sizes that would need too large a frame are left out; nothing where the left image shows nothing.
     """
     valid = {side: rect.valid(side) for side in ("left", "right")}
     if not valid["left"].any():
@@ -85,6 +88,8 @@ def sized(rect: Rectification) -> Iterator[tuple[float, Rectification, float]]:
     factor = min(_to_source_resolution(rect), math.sqrt(WORKING_PIXELS / (extent[0] * extent[1])))
     for megapixels in MEGAPIXELS:
         frame_pixels = 1e6 * megapixels * per_valid_pixel
+        if frame_pixels > LARGEST_FRAME:
+            return
         scale = max(factor, math.sqrt(frame_pixels / (extent[0] * extent[1])))
         size = max(1, round(scale * extent[0])), max(1, round(scale * extent[1]))
         yield megapixels, rect.windowed(corner, extent, size), frame_pixels
