@@ -186,7 +186,9 @@ class _Found:
 
 
 def _alone(statement: Statement, own: Sequence[Result]) -> _Found:
-    numbers: _Numbers = {(*_place(row), row.cell.options): _number(row, statement) for row in own}
+    numbers: _Numbers = {
+        (*_place(row), row.cell.options): _number(row, statement) for row in own if not _has_failed(row)
+    }
     return _found(numbers, sum(map(_has_failed, own)))
 
 
@@ -199,10 +201,11 @@ def _against(statement: Statement, own: Sequence[Result], others: Sequence[Resul
             "expected against_options that name one"
         )
     pairs = [(row, partners[_place(row)]) for row in own if _place(row) in partners]
-    failed = sum(_has_failed(row) or _has_failed(other) for row, other in pairs)
+    sound = [(row, other) for row, other in pairs if not (_has_failed(row) or _has_failed(other))]
+    failed = len(pairs) - len(sound)
     numbers: _Numbers = {
         (*_place(row), row.cell.options): _log_ratio(_number(row, statement), _number(other, statement))
-        for row, other in pairs
+        for row, other in sound
     }
     if statement.within is not None:
         low, high = map(_log, statement.within)
