@@ -259,11 +259,11 @@ RECONSTRUCTION = rb.Claim(
     because={
         "held": "At one size of the matched image a perspective image spends its pixels on its rim: what is "
         "left for the middle is small.",
-        "depends": "It depends on what is asked for and on how large the matched image is: a perspective image "
-        "spends its pixels on its rim, which costs the middle its accuracy before its density.",
+        "depends": "It depends on what is asked for and on how large the matched image is: a perspective "
+        "image spends its pixels on its rim, which costs the middle its accuracy before its density.",
         "not held": "At the focal length that the paper states, and at equal view and size, the perspective "
-        "image is matched as densely. It spends its pixels on its rim, though: in a small matched image less of "
-        "what is found is right, and Abraham's map mends that as well.",
+        "image is matched as densely. It spends its pixels on its rim, though: in a small matched image "
+        "less of what is found is right, and Abraham's map mends that as well.",
         "not measured": "No pair could be measured.",
     },
 )
