@@ -67,7 +67,7 @@ def against(
     return [
         rb.Statement(
             label=f"{OURS} / {rival}, {words}{where}",
-            clause=clause,
+            clause=f"{clause} {rival}",
             group=group,
             metric=metric,
             method=OURS,
@@ -95,7 +95,7 @@ def values(
     return [
         rb.Statement(
             label=f"{method}, {words}",
-            clause=clause,
+            clause=f"{method} {clause}",
             group=group,
             metric=metric,
             method=method,
@@ -135,7 +135,7 @@ ROW_ERROR = rb.Claim(
     statements=[
         *values("below 1 px", "fisheye", FISHEYE, IN_RECTIFIED_PX, below=1.0),
         *least_on("the smallest", "fisheye", "abraham", FISHEYE, ROW_ERRORS, above=3),
-        *against("very close", "fisheye", ("abraham",), {**ROW_ERRORS, **AT_95}, **VERY_CLOSE),
+        *against("very close to", "fisheye", ("abraham",), {**ROW_ERRORS, **AT_95}, **VERY_CLOSE),
     ],
     because={
         "held": "All methods share one pose and its error; in rectified pixels they differ by the scale of "
@@ -154,8 +154,8 @@ DISTORTION = rb.Claim(
     "the conventional one, and about 30 % below Abraham's.",
     statements=[
         *least_on("the least", "lenses", OURS, FISHEYE, DISTORTIONS, above=4),
-        *against("dramatically", "lenses", ("conventional",), DISTORTIONS, below=DRAMATICALLY),
-        *against("about 30 %", "lenses", ("abraham",), DISTORTIONS, **ABOUT_30_PERCENT_LESS),
+        *against("dramatically below", "lenses", ("conventional",), DISTORTIONS, below=DRAMATICALLY),
+        *against("about 30 % below", "lenses", ("abraham",), DISTORTIONS, **ABOUT_30_PERCENT_LESS),
     ],
     because={
         "held": "Its cubics are fitted to this measure.",
@@ -176,9 +176,9 @@ PERSPECTIVE_PAIRS = rb.Claim(
     statements=[
         *values("below 1 px", "perspective", PERSPECTIVE, IN_RECTIFIED_PX, below=1.0),
         *least_on("best on three", "perspective", OURS, PERSPECTIVE, ROW_ERRORS, above=3),
-        *against("dramatically", "perspective", PERSPECTIVE[:2], ON_HALF_THE_VIEW, below=DRAMATICALLY),
+        *against("dramatically below", "perspective", PERSPECTIVE[:2], ON_HALF_THE_VIEW, below=DRAMATICALLY),
         *against(
-            "dramatically",
+            "dramatically below",
             "distorted",
             PERSPECTIVE[:2],
             ON_HALF_THE_VIEW,
@@ -193,7 +193,8 @@ PERSPECTIVE_PAIRS = rb.Claim(
         "depends": "The row errors of all methods come from the same matches of the images; in rectified "
         "pixels the scale of an image decides, too.",
         "not held": "The row errors of all methods come from the same matches of the images; none is best "
-        "by nature.",
+        "by nature. Without a lens's distortion a homography bends little, and the margin is smaller than "
+        "on lenses with it.",
         "not measured": "No pair could be measured.",
     },
 )
@@ -275,7 +276,7 @@ TIME = rb.Claim(
         *(
             rb.Statement(
                 label=f"{words}, share of the total",
-                clause="2 : 1 : 2",
+                clause=f"{words}'s part",
                 group="timing",
                 metric=metric,
                 over="total_s",
