@@ -13,6 +13,7 @@ import sys
 from rectbench.cli import machine, photographs, rendering, running
 from rectbench.cli.app import WRONG_USAGE, app
 from rectbench.errors import RectbenchError
+from rectbench.experiments.execution.worker import silence_warnings
 
 for command in (
     machine.list_,
@@ -38,6 +39,7 @@ for command in (
 def main() -> None:
     """Run the command line; a known error is one line on stderr."""
     logging.basicConfig(format="rectbench: %(message)s", level=logging.WARNING)
+    silence_warnings()
     try:
         status = app(standalone_mode=False)
     except (RectbenchError, OSError) as error:

@@ -7,7 +7,6 @@ from rectbench.metrics.analyses.frame import frame_costs as frame_costs
 from rectbench.metrics.analyses.uncertainty import Uncertainty as Uncertainty
 from rectbench.metrics.analyses.uncertainty import uncertainty as uncertainty
 from rectbench.metrics.coverage import coverage as coverage
-from rectbench.metrics.coverage import dense_pixels as dense_pixels
 from rectbench.metrics.distortion import Distortion as Distortion
 from rectbench.metrics.distortion import distortion as distortion
 from rectbench.metrics.distortion import distortion_of as distortion_of
@@ -29,4 +28,5 @@ from rectbench.metrics.row_error_features import FeatureRowError as FeatureRowEr
 from rectbench.metrics.sampling import sampling as sampling
 from rectbench.metrics.timing import Timing as Timing
 from rectbench.metrics.view import View as View
+from rectbench.scored import dense_pixels as dense_pixels
 from rectbench.warps.jacobians import Jacobians as Jacobians

@@ -2,29 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any
+import math
 
 import numpy as np
 
-from rectbench.cameras import Camera
-from rectbench.cameras.projection import projected_partials
-from rectbench.formulas.evaluation import evaluate_points
 from rectbench.plugins.metric import Case, Column, Metric, Tolerance
 from rectbench.rigs import Rig
-from rectbench.types import FloatArray
+from rectbench.scored import SeenPixels, SeenView
 from rectbench.warps import Rectification, Warp
 from rectbench.warps.rectification import in_frame
-from rectbench.warps.warp import rotated
-
-DENSE_PIXELS = 150_000
-"""Coverage and order look at about this many pixels of an image, on a regular grid."""
-
-
-def dense_pixels(camera: Camera, count: int = DENSE_PIXELS) -> FloatArray:
-    """A regular grid of whole pixels [N, 2] that the lens sees; all of them in a small image."""
-    step = max(1, round((camera.width * camera.height / count) ** 0.5))
-    grid = camera.pixel_grid()[step // 2 :: step, step // 2 :: step].reshape(-1, 2)
-    return grid[camera.unproject(grid)[1]]
 
 
 def coverage(rect: Rectification, rig: Rig) -> dict[str, float]:
@@ -39,11 +25,15 @@ def coverage(rect: Rectification, rig: Rig) -> dict[str, float]:
     >>> 0 < kept["coverage_overlap"] <= 1
     True
     """
-    sides = ((rect.left, rig.right, rig.R_right_left), (rect.right, rig.left, rig.R_right_left.T))
-    shares = np.array([_kept_shares(warp, other, R, rect.size) for warp, other, R in sides])
-    pixels, solid_angle, overlap = shares.mean(axis=0)
+    return coverage_of(rect, SeenView.of(rig))
+
+
+def coverage_of(rect: Rectification, seen: SeenView) -> dict[str, float]:
+    """The same, with what the rig's lenses see."""
+    sides = ((rect.left, seen.left), (rect.right, seen.right))
+    pixels, solid_angle, overlap = np.mean([_kept_shares(*side, rect.size) for side in sides], axis=0)
     valid = [rect.valid("left").mean(), rect.valid("right").mean()]
-    source_pixels = np.mean([camera.width * camera.height for camera in (rig.left, rig.right)])
+    source_pixels = np.mean([math.prod(warp.source.size) for warp in (rect.left, rect.right)])
     return {
         "coverage_pixels": float(pixels),
         "coverage_solid_angle": float(solid_angle),
@@ -53,30 +43,14 @@ def coverage(rect: Rectification, rig: Rig) -> dict[str, float]:
     }
 
 
-def _kept_shares(
-    warp: Warp, other: Camera, R_other_cam: FloatArray, size: tuple[int, int]
-) -> tuple[float, float, float]:
-    def formula(c: Any, u: Any, v: Any, xp: Any) -> tuple[Any, ...]:
-        x, y, z, ok = warp.source.unproject_formula(c.warp.source, u, v, xp)
-        du, dv, _ = projected_partials(warp.source, c.warp.source, x, y, z, xp)
-        u_other, v_other, shared = other.project_formula(c.other, *rotated(c.R_other_cam, x, y, z), xp)
-        nowhere = 0.0 * u - 1e9
-        return solid_angle(du, dv, xp), *(xp.where(shared, w, nowhere) for w in (u_other, v_other)), ok
-
-    pixels = dense_pixels(warp.source)
-    kept = in_frame(warp.forward(pixels), size)
-    rows = tuple(tuple(map(float, row)) for row in R_other_cam)
-    constants = {"warp": warp.constants, "other": other.constants, "R_other_cam": rows}
-    seen, _ = evaluate_points(formula, constants, pixels)
-    angle, shared = seen[:, 0], other.contains(seen[:, 1:])
-    overlap = kept[shared].mean() if shared.any() else np.nan
-    return float(kept.mean()), float(angle[kept].sum() / angle.sum()), float(overlap)
-
-
-def solid_angle(du: Any, dv: Any, xp: Any) -> Any:
-    """Solid angle of a pixel, steradians, from the projection's gradients du/d(ray) and dv/d(ray)."""
-    uu, uv, vv = (sum(p * q for p, q in zip(a, b, strict=True)) for a, b in ((du, du), (du, dv), (dv, dv)))
-    return 1.0 / xp.sqrt(uu * vv - uv * uv)
+def _kept_shares(warp: Warp, seen: SeenPixels, size: tuple[int, int]) -> tuple[float, float, float]:
+    kept = in_frame(warp.forward(seen.pixels), size)
+    overlap = kept[seen.shared].mean() if seen.shared.any() else math.nan
+    return (
+        float(kept.mean()),
+        float(seen.solid_angle_sr[kept].sum() / seen.solid_angle_sr.sum()),
+        float(overlap),
+    )
 
 
 class Coverage(Metric):
@@ -127,4 +101,4 @@ class Coverage(Metric):
 
     def compute(self, case: Case) -> dict[str, float]:
         """Means of both images."""
-        return coverage(case.rect, case.rig)
+        return coverage_of(case.rect, case.pair.seen_view)

@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 
-from rectbench.metrics.coverage import dense_pixels
 from rectbench.plugins.metric import Case, Column, Metric, Tolerance
 from rectbench.rigs import Rig
+from rectbench.scored import dense_pixels
 from rectbench.types import FloatArray
 from rectbench.warps import Rectification, Warp, rectifying_rotations
 from rectbench.warps.rectification import in_frame

@@ -8,9 +8,9 @@ import numpy as np
 
 from rectbench.errors import InvalidInput
 from rectbench.matching import Reconstruction, reconstruct
-from rectbench.metrics.coverage import dense_pixels
 from rectbench.plugins.metric import Case, Column, Metric, Tolerance
 from rectbench.rendering.truth import Truth
+from rectbench.scored import dense_pixels
 from rectbench.types import BoolArray, FloatArray
 
 BAD_PX = (1, 2, 4)

@@ -19,7 +19,7 @@ from rectbench.plugins.matches import true_noise_px
 from rectbench.rendering.truth import Truth
 from rectbench.rigs import Rig
 from rectbench.rigs.poses import POSES, perturb
-from rectbench.scored import ScoredView
+from rectbench.scored import ScoredView, SeenView
 from rectbench.store.keys import Inputs, derived_seed
 from rectbench.store.store import Store
 from rectbench.types import Matches
@@ -50,6 +50,11 @@ class Pair(ABC):
     def scored_view(self) -> ScoredView:
         """The source pixels that rectifications are scored on, the same for all methods."""
         return ScoredView.of(self.rig)
+
+    @cached_property
+    def seen_view(self) -> SeenView:
+        """What its lenses see, of which coverage is a share."""
+        return SeenView.of(self.rig)
 
     @property
     @abstractmethod

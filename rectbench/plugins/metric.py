@@ -17,7 +17,7 @@ from rectbench.plugins.cell import IDENTITY
 from rectbench.registry.kind import Described, Kind, described_object
 from rectbench.rendering.truth import Truth
 from rectbench.rigs import Rig
-from rectbench.scored import Delivered, ScoredView
+from rectbench.scored import Delivered, ScoredView, SeenView
 from rectbench.types import Matches
 from rectbench.warps import Rectification
 
@@ -159,6 +159,10 @@ class Known(Protocol):
     @property
     def scored_view(self) -> ScoredView:
         """The source pixels that rectifications are scored on, the same for all methods."""
+
+    @property
+    def seen_view(self) -> SeenView:
+        """What the rig's lenses see, of which coverage is a share."""
 
     @property
     def images(self) -> StereoPair:

@@ -196,11 +196,15 @@ def _spread(
     side = max(1.0, (size[0] * size[1] / n) ** 0.5)
     columns = int(size[0] // side) + 1
     cell = (v // side).astype(np.int64) * columns + (u // side).astype(np.int64)
+    cell = cell.astype(np.min_scalar_type(int(cell.max())))  # 16 bits are sorted by radix, ten times as fast
     shuffled = rng.permutation(len(u))
     order = shuffled[np.argsort(cell[shuffled], kind="stable")]
-    sorted_cells = cell[order]
-    _, starts, counts = np.unique(sorted_cells, return_index=True, return_counts=True)
-    turn = np.arange(len(order)) - np.repeat(starts, counts)
+    counts = np.bincount(cell)
+    counts = counts[counts > 0]
+    turn = np.arange(len(order)) - np.repeat(np.cumsum(counts) - counts, counts)
     # Within a turn the cells come in random order, so that a cut-off last turn is spread as well.
-    draw = np.lexsort((rng.random(len(order)), turn))[:n]
+    lots = rng.random(len(order))
+    last = np.searchsorted(np.cumsum(np.bincount(turn)), n)  # no later turn is drawn from
+    able = np.flatnonzero(turn <= last)
+    draw = able[np.lexsort((lots[able], turn[able]))[:n]]
     return np.sort(order[draw])

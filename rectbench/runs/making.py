@@ -47,7 +47,8 @@ def run(
     report : a report's name, path, or the report itself.
     out : the run's folder; `runs/<report>` by default.
     methods, scenes, rigs, seeds : what to run in the place of the report's own; names or paths. A "+"
-        before a name adds it to the report's own.
+        before a name adds it to the report's own. Lenses without a scene run whatever `scenes` says, alone if
+        it says "none".
     data : the folder of photographs, for a report that takes them.
     options : options by method and name, laid over the report's.
     jobs : worker processes; as many as there are cores by default.

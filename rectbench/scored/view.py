@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -29,8 +30,8 @@ SHARES = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.75, 0.8, 0.9, 0.95, 1.0)
 """The shares of the view that rows tell of."""
 ARM_PX = 0.5
 """A derivative is a difference over twice this, one pixel; a scored pixel has its four arms in the view."""
-ROW_POINTS = 257
-"""Along the middle row of a part of the view; its angle is theirs, added up, so that it may pass 180°."""
+ROW_POINTS = 513
+"""Along the middle row of the view."""
 ARMS = ARM_PX * np.array([[-1.0, 0.0], [1.0, 0.0], [0.0, -1.0], [0.0, 1.0]])
 
 
@@ -86,14 +87,20 @@ class ScoredPixels:
 
     def across_deg(self, share: float) -> float:
         """The horizontal field of view of A_s, degrees: the angle between the ends of its middle row."""
-        half = np.array([self.edge(share) * self.reach[0], 0.0])
-        row = np.linspace(self.middle - half, self.middle + half, ROW_POINTS)
-        rays, seen = self.camera.unproject(row)
-        ends = np.flatnonzero(seen & self.camera.contains(row))
-        if not ends.size:
-            return math.nan
-        steps = np.linalg.norm(np.diff(rays[ends[0] : ends[-1] + 1], axis=0), axis=-1)
-        return math.degrees(float(np.nansum(2 * np.arcsin(steps / 2))))
+        places, angles_rad = self._middle_row
+        ends = self.edge(share) * np.array([-1.0, 1.0])
+        return math.degrees(float(np.diff(np.interp(ends, places, angles_rad))[0]))
+
+    @cached_property
+    def _middle_row(self) -> tuple[FloatArray, FloatArray]:
+        """Along the middle row, as shares of the reach [K]: the angle from its left end, radians [K].
+
+        Steps are added up, so that it may pass 180°.
+        """
+        places = np.linspace(-1.0, 1.0, ROW_POINTS)
+        rays, _ = self.camera.unproject(self.middle + places[:, None] * np.array([self.reach[0], 0.0]))
+        steps = 2 * np.arcsin(np.linalg.norm(np.diff(rays, axis=0), axis=-1) / 2)
+        return places, np.concatenate([[0.0], np.cumsum(np.nan_to_num(steps))])
 
     def redrawn(self, chosen: NDArray[np.intp], rng: np.random.Generator) -> FloatArray:
         """Other places [K, 2] in the cells of the scored pixels of these numbers [K]."""

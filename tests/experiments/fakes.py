@@ -81,6 +81,13 @@ def write_report_file(folder: Path, name: str = "small", **fields: Any) -> str:
     return _write(folder / f"{name}.py", REPORT.format(fields=report))
 
 
+ASSERT_ONE_THREAD = """
+    import scipy.linalg, threadpoolctl
+    threads = [library["num_threads"] for library in threadpoolctl.threadpool_info()]
+    assert threads and set(threads) == {1}, threads
+"""
+"""What a method may do first that is to run where BLAS and OpenMP have one thread."""
+
 FIELDS: dict[str, Any] = {
     "name": "small",
     "title": "A small report",

@@ -10,7 +10,7 @@ import pytest
 
 import rectbench as rb
 from rectbench.runs.making import run
-from tests.experiments.fakes import small_report, write_method
+from tests.experiments.fakes import ASSERT_ONE_THREAD, small_report, write_method
 
 distributed = pytest.importorskip("distributed", reason="the extra rectbench[dask] is not installed")
 
@@ -24,10 +24,11 @@ def address() -> Iterator[str]:
 
 
 def test_the_rows_are_the_same_and_a_crash_costs_its_cell_alone(tmp_path: Path, address: str) -> None:
-    methods = ("abraham", write_method(tmp_path, "exits", "os._exit(7)"))
+    one_thread = write_method(tmp_path, "one_thread", ASSERT_ONE_THREAD)
+    methods = ("abraham", write_method(tmp_path, "exits", "os._exit(7)"), one_thread)
     report = small_report(methods=methods)
     on_cluster = run(report, dask=address)
-    assert list(on_cluster["status"]) == ["ok", "crash"]
+    assert list(on_cluster["status"]) == ["ok", "crash", "ok"], list(on_cluster["reason"])
     assert "7" in on_cluster["reason"][1]
     # What the cluster finished is in the store here: only the crashed cell runs again.
     pd.testing.assert_frame_equal(

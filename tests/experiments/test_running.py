@@ -20,7 +20,14 @@ from rectbench.plugins.catalogue import known
 from rectbench.runs.making import run
 from rectbench.runs.run import read_run
 from rectbench.store.store import STORE_VARIABLE, Store
-from tests.experiments.fakes import FIELDS, small_report, write_method, write_scene
+from tests.experiments.fakes import (
+    ASSERT_ONE_THREAD,
+    FIELDS,
+    small_report,
+    write_method,
+    write_report_file,
+    write_scene,
+)
 
 TIMES = ["fit_s", "maps_s", "warp_s"]
 
@@ -144,6 +151,62 @@ def test_the_rows_do_not_depend_on_the_number_of_jobs(report_of_four: rb.Report,
     assert (tables[0]["status"] == "ok").all()
     assert tables[0]["row_error_mean_px"].between(1e-3, 10).all()
     assert tables[0]["row_error_features_mean_px"].notna().all()
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_blas_and_openmp_add_up_with_one_thread_for_any_number_of_jobs(tmp_path: Path, jobs: int) -> None:
+    method = write_method(tmp_path, "one_thread", ASSERT_ONE_THREAD)
+    assert list(run(small_report(methods=(method,)), jobs=jobs)["reason"]) == [""]
+
+
+def test_cells_run_while_other_pairs_are_still_rendered(tmp_path: Path) -> None:
+    ran = tmp_path / "ran"
+    waits = f"import time, pathlib\nwhile not pathlib.Path({str(ran)!r}).exists(): time.sleep(0.05)"
+    scenes = (write_scene(tmp_path, "slow", waits), write_scene(tmp_path, "quick"))
+    method = write_method(tmp_path, "told", f"Path({str(ran)!r}).touch()")
+    fields = {"metrics": ("geometry", "row_error"), "methods": (method,), "render_timeout_s": 60.0}
+    table = run(small_report(scenes=scenes, **fields), jobs=2)
+    assert list(table["status"]) == ["ok", "ok"], list(table["reason"])
+
+
+def test_what_plugins_warn_of_does_not_reach_the_terminal(tmp_path: Path) -> None:
+    warn = "import warnings; warnings.warn('a plugin warns'); np.mean([])"
+    methods = (write_method(tmp_path, "warns", warn), "abraham")
+    figure = tmp_path / "figure.py"
+    figure.write_text(
+        "import matplotlib.figure, numpy as np, rectbench as rb\n"
+        "class Warns(rb.Figure):\n"
+        "    'A figure.'\n"
+        "    name, topic = 'warns', 'Charts'\n"
+        "    def drawings(self, given):\n"
+        "        np.mean([])\n"
+        "        def draw():\n"
+        "            np.mean([])\n"
+        "            return matplotlib.figure.Figure()\n"
+        "        yield rb.Drawing('warns', 'Warns', '', 0, draw)\n"
+    )
+    scene = write_scene(tmp_path, "wall", warn)
+    figures = ("bars", "scatter", "maps", str(figure))
+    fields = {
+        "scenes": (scene,),
+        "figures": figures,
+        "metrics": ("geometry", "row_error"),
+        "methods": methods,
+    }
+    report = write_report_file(tmp_path, **fields)
+    command = [
+        sys.executable,
+        "-m",
+        "rectbench",
+        "run",
+        report,
+        "--out",
+        str(tmp_path / "run"),
+        "--jobs",
+        "1",
+    ]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert done.stderr == ""
 
 
 def test_a_run_folder_holds_the_rows_and_the_plan(report_of_four: rb.Report, tmp_path: Path) -> None:

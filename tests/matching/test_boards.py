@@ -42,6 +42,29 @@ def test_a_chessboard_is_found_whole_to_hundredths_of_a_pixel(lens: rb.Rig, colu
     assert np.abs(off.mean(axis=0)).max() < 0.03
 
 
+@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize(("lens", "width_m"), [(PINHOLE, 0.3), (FISHEYE, 0.5)], ids=["pinhole", "fisheye"])
+def test_a_board_is_found_in_any_pose_before_a_busy_background(
+    lens: rb.Rig, width_m: float, seed: int
+) -> None:
+    """Turned by up to 45 degrees, near or at twice the distance, its white rim a tenth to a whole square."""
+    rng = np.random.default_rng(seed)
+    columns, rows = [(9, 7), (8, 6), (10, 7)][seed % 3]
+    seen = seen_board(
+        lens,
+        chessboard(columns, rows, margin=int(rng.choice([4, 12, 24, 40]))),
+        width_m=width_m,
+        distance_m=rng.uniform(0.6, 1.1),
+        turn_deg=tuple(rng.uniform(-1, 1, 3) * [45, 45, 35]),
+        before=sphere_pair(lens, seed) if seed % 2 else None,
+        samples=2,
+    )
+    off = found_in(seen, f"chessboard {columns - 1}x{rows - 1}")
+    assert len(off) == (columns - 1) * (rows - 1)
+    # With four samples a pixel an edge is a comb.
+    assert np.sqrt((off**2).mean()) < 0.2
+
+
 @pytest.mark.parametrize(
     ("columns", "rows", "roll_deg"), [(9, 7, 35.0), (9, 7, -35.0), (8, 8, 35.0), (10, 7, -35.0)]
 )

@@ -242,3 +242,16 @@ def test_between_pixels_a_surface_is_blended_and_an_edge_is_not() -> None:
     expected = [1.25, 1.5, 1.5, 30.0, 30.0, np.nan, 1.0, np.nan]
     np.testing.assert_allclose(found.at(places), expected)
     assert found.at([0.5, 0.5]) == pytest.approx(1.75)
+
+
+@pytest.mark.parametrize("threads", [2, 3])
+def test_disparities_do_not_depend_on_the_number_of_threads(threads: int) -> None:
+    usual, found = cv2.getNumThreads(), []
+    rect, pair = rb.rectify(RIGS["toed in"], method="abraham"), pair_of("toed in")
+    try:
+        for count in (1, threads):
+            cv2.setNumThreads(count)
+            found.append(dense_disparity(rect, pair.left, pair.right).px)
+    finally:
+        cv2.setNumThreads(usual)
+    np.testing.assert_array_equal(*found)

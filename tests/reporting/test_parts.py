@@ -159,7 +159,7 @@ def test_options_of_one_part_do_not_rename_a_method_in_another(write_run: WriteR
 def test_variants_of_a_start_stay_methods_where_no_study_is_asked_for(write_run: WriteRun) -> None:
     rows = [row | {"group": ""} for row in (start_row("street", draw, 1.0) for draw in range(2))]
     names = {table.name for table in all_tables(read_run(write_run(rows)))}
-    assert names == {"main-estimated", "log-distortion", "distortion", "coverage", "pair-street-t265"}
+    assert names == {"main-estimated", "distortion", "pair-street-t265"}
 
 
 def test_a_pose_that_methods_share_is_counted_once(write_run: WriteRun) -> None:

@@ -24,7 +24,7 @@ def run_of(write_run: Callable[..., Path], monkeypatch: pytest.MonkeyPatch) -> C
     """A run of one cell whose refit is RECTIFICATION, by the distortion it claims to have measured."""
 
     def read(native: float) -> Run:
-        row = make_row("street", "t265", "exact", "abraham", distortion_native=native)
+        row = make_row("street", "t265", "exact", "abraham", distortion_native_grid=native)
         run = read_run(write_run([row]))
         planned = SimpleNamespace(cell=run.results[0].cell, pair="the pair")
         monkeypatch.setattr(sources, "open_pair", lambda spec, store: SimpleNamespace(spec=spec))

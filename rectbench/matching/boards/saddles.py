@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from rectbench.images.reading import Grey
 from rectbench.types import FloatArray
@@ -11,7 +12,7 @@ from rectbench.types import FloatArray
 STEPS = (cv2.TERM_CRITERIA_EPS | cv2.TERM_CRITERIA_COUNT, 60, 1e-4)
 
 
-def refined_saddles(image: Grey, points: FloatArray, half: int) -> FloatArray:
+def refined_saddles(image: Grey | NDArray[np.float32], points: FloatArray, half: int) -> FloatArray:
     """Points [..., 2] moved to where gradients about them are square to the ways there; NaN where none is.
 
     The window reaches `half` pixels from its middle. (Förstner and Gülch 1987.)

@@ -110,8 +110,8 @@ class Equations:
     @cached_property
     def noise(self) -> float:
         """Standard deviation of a pixel coordinate, px."""
-        freedom = len(self.distances) / max(len(self.distances) - 5, 1)
-        return float(TO_DEVIATION * np.median(self.distances) * np.sqrt(freedom))
+        count = len(self.distances)
+        return float(TO_DEVIATION * np.median(self.distances) * count / max(count - PARAMETERS, 1))
 
     @cached_property
     def residual_weights(self) -> FloatArray:
@@ -150,12 +150,13 @@ class Equations:
         square = ((weights * self.distances[self.seen]) ** 2).sum() / freedom * (few / slope) ** 2
         spread = np.linalg.inv(_summed(self.information, self.leverage_weights))
         middle = _summed(self.information, self.leverage_weights**2)
-        return square * _from_few(freedom) * spread @ middle @ spread
+        covariance: FloatArray = square * _from_few(freedom) * spread @ middle @ spread
+        return covariance
 
 
 def _from_few(freedom: int) -> float:
     """Square of the size of F's region over that of χ²'s."""
-    largest = PARAMETERS * fdtri(PARAMETERS, max(WORTH * freedom, 1), COVERED)
+    largest = PARAMETERS * fdtri(PARAMETERS, max(WORTH * (freedom - PARAMETERS), 1), COVERED)
     return float(largest / chdtri(PARAMETERS, 1 - COVERED))
 
 

@@ -25,9 +25,9 @@ from numpy.typing import ArrayLike
 from rectbench.cameras.projection import as_points
 from rectbench.errors import InvalidInput
 from rectbench.metrics.analyses.propagation import GROUPS, Propagation
-from rectbench.metrics.coverage import dense_pixels
 from rectbench.rigs import Rig
 from rectbench.rigs.covariance import RigCovariance
+from rectbench.scored import dense_pixels
 from rectbench.types import FloatArray
 from rectbench.warps import Rectification
 from rectbench.warps.jacobians import finite

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from rectbench.plugins.metric import Column
 from rectbench.reporting.charts.critical_difference import LEAST_RIGS, decided, shown_beliefs
 from rectbench.reporting.curves import ranked_by
@@ -49,4 +51,5 @@ def _row(belief: Belief) -> tuple[Entry, ...]:
 
 
 def _probability(value: float) -> Entry:
-    return Entry(number(value, _PROBABILITY).text, value, best=value >= _LIKELY)
+    told = None if math.isnan(value) else value
+    return Entry(number(told, _PROBABILITY).text, told, best=value >= _LIKELY)

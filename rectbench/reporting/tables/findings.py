@@ -13,11 +13,13 @@ from rectbench.metrics.view import PERSPECTIVE, PROJECTION
 from rectbench.plugins.metric import Column
 from rectbench.plugins.result import Part
 from rectbench.reporting.curves import RigCurves, rig_curves
-from rectbench.reporting.tables.captions import counted, listed
+from rectbench.reporting.tables.captions import listed
 from rectbench.reporting.tables.numbers import shown
 
 _MOST_NAMES = 4
 """Longer lists of rigs are counted."""
+_WHOLE = 100
+"""Percent."""
 _NONE = 1e-9
 """Distortion and differences up to this are none."""
 
@@ -43,10 +45,14 @@ def reversals(values: Mapping[str, Mapping[str, float]], column: Column) -> Iter
 
 @dataclass(frozen=True)
 class _Limit:
-    """Up to which view a perspective image is the best on a rig, and what is at the end of the view."""
+    """Up to which share (%) and view a perspective image is the best on a rig: share 0 if it never is.
 
+    `then` is what is best beyond: at the end of the view, or from its middle on where share is 0.
+    """
+
+    share: float
     view_deg: float
-    beyond: str
+    then: str
 
 
 def perspective_limit(part: Part) -> str:
@@ -57,21 +63,19 @@ def perspective_limit(part: Part) -> str:
     """
     perspective = _perspective_methods(part)
     others = tuple(m for m in part.methods if m not in perspective)
-    if not perspective or not others:
-        return ""
-    limits, always, never = {}, [], []
-    for one in rig_curves(part):
-        best, rival = (_least(one, methods) for methods in (perspective, others))
-        if not best or not rival:
-            continue
-        share = _crossing(one, best, rival, perspective)
-        if share is None:
-            always.append(one.rig)
-        elif share == 0 or (view := one.view_deg(share)) is None:
-            never.append(one.rig)
-        else:
-            limits[one.rig] = _Limit(view, rival[max(rival)][1])
-    return _limit_text(limits, always, never)
+    limits = {one.rig: _limit(one, perspective, others) for one in rig_curves(part)}
+    return _limit_text({rig: limit for rig, limit in limits.items() if limit})
+
+
+def _limit(one: RigCurves, perspective: Sequence[str], others: Sequence[str]) -> _Limit | None:
+    best, rival = (_least(one, methods) for methods in (perspective, others))
+    if not best or not rival:
+        return None
+    share = _crossing(one, best, rival, perspective)
+    if share == 0:
+        return _Limit(0, 0, rival[min(rival)][1])
+    view = one.view_deg(share)
+    return None if view is None else _Limit(share, view, rival[max(rival)][1])
 
 
 def _perspective_methods(part: Part) -> tuple[str, ...]:
@@ -95,8 +99,8 @@ def _crossing(
     best: Mapping[int, tuple[float, str]],
     rival: Mapping[int, tuple[float, str]],
     perspective: Sequence[str],
-) -> float | None:
-    """The share (%) up to which `best` is below `rival`: None if to the end, 0 if it never is."""
+) -> float:
+    """The share (%) up to which `best` is below `rival`: 0 if it never is, the last one if always."""
     leads = {share: _lead(best[share][0], rival[share][0]) for share in rival if share in best}
     ends = sorted(rival)
     if not leads or min(leads) != ends[0] or leads[ends[0]] <= 0:
@@ -107,7 +111,7 @@ def _crossing(
             return min(max(kept, share), following)
         if leads[following] <= 0:
             return share + (following - share) * leads[share] / (leads[share] - leads[following])
-    return None
+    return ends[-1]
 
 
 def _lead(value: float, against: float) -> float:
@@ -116,24 +120,42 @@ def _lead(value: float, against: float) -> float:
     return lead if abs(lead) > _NONE else 0.0
 
 
-def _limit_text(limits: Mapping[str, _Limit], always: Sequence[str], never: Sequence[str]) -> str:
-    told = []
-    if limits:
-        views = [limit.view_deg for limit in limits.values()]
-        up_to = f"{min(views):.0f}° across"
-        if f"{max(views):.0f}° across" != up_to:
-            among = f"median {median(views):.0f}°, {counted(len(views), 'rig')}"
-            up_to = f"{min(views):.0f}° to {max(views):.0f}° across ({among})"
-        winners = [method for method, _ in Counter(limit.beyond for limit in limits.values()).most_common()]
-        told.append(
-            f"In views of up to {up_to} a perspective image has less log distortion than any other method; "
-            f"in wider ones {' or '.join(winners)} has less."
-        )
-    for rigs, how in ((always, "in the whole view"), (never, "in no view")):
-        if rigs:
-            told.append(f"On {_some(rigs)} a perspective image has the least log distortion {how}.")
-    return " ".join(told)
+def _limit_text(limits: Mapping[str, _Limit]) -> str:
+    """All rigs in a sentence, the larger groups of them first."""
+    never = {rig: one for rig, one in limits.items() if one.share == 0}
+    always = {rig: one for rig, one in limits.items() if one.share == _WHOLE}
+    crossing = {rig: one for rig, one in limits.items() if rig not in (*never, *always)}
+    cases = [
+        (never, "in no view", f", {_winners(never)} having less from the middle on"),
+        (always, "in the whole view", ""),
+        (
+            crossing,
+            _views(crossing),
+            f", {_winners(crossing)} having less in wider ones",
+        ),
+    ]
+    cases = sorted((case for case in cases if case[0]), key=lambda case: -len(case[0]))
+    told = [f"{views}{_where(list(rigs), len(limits))}{then}" for rigs, views, then in cases]
+    start = "A perspective image has less log distortion than any other method "
+    return f"{start}{'; '.join(told)}." if told else ""
 
 
-def _some(rigs: Sequence[str]) -> str:
-    return listed(rigs) if len(rigs) <= _MOST_NAMES else counted(len(rigs), "rig")
+def _views(limits: Mapping[str, _Limit]) -> str:
+    views = [one.view_deg for one in limits.values()]
+    if not views:
+        return ""
+    low, high = f"{min(views):.0f}°", f"{max(views):.0f}°"
+    up_to = low if low == high else f"{low} to {high}"
+    middle = "" if low == high else f" (median {median(views):.0f}°)"
+    return f"in views of up to {up_to} across{middle}"
+
+
+def _winners(limits: Mapping[str, _Limit]) -> str:
+    return " or ".join(method for method, _ in Counter(one.then for one in limits.values()).most_common())
+
+
+def _where(rigs: Sequence[str], total: int) -> str:
+    """On which of the rigs; long lists are counted."""
+    if len(rigs) == total:
+        return "" if total == 1 else f" on {'both' if total == 2 else f'all {total}'} rigs"
+    return f" on {listed(rigs)}" if len(rigs) <= _MOST_NAMES else f" on {len(rigs)} of {total} rigs"
