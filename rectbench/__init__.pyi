@@ -22,6 +22,7 @@ from .errors import Unavailable as Unavailable
 from .errors import UnknownName as UnknownName
 from .errors import Unsupported as Unsupported
 from .experiments.claims import Claim as Claim
+from .experiments.claims import SourcePart as SourcePart
 from .experiments.claims import Statement as Statement
 from .experiments.spec import Group as Group
 from .experiments.spec import Report as Report
@@ -64,10 +65,12 @@ from .scored import Delivered as Delivered
 from .scored import ScoredView as ScoredView
 from .types import Images as Images
 from .types import Matches as Matches
+from .warps import Composed as Composed
 from .warps import Cubic as Cubic
 from .warps import Epipolar as Epipolar
 from .warps import Framing as Framing
 from .warps import Perspective as Perspective
+from .warps import PolynomialInverse as PolynomialInverse
 from .warps import Profile as Profile
 from .warps import Radial as Radial
 from .warps import Rectification as Rectification

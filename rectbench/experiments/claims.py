@@ -8,8 +8,18 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-Verdict = Literal["held", "not held", "depends", "not measured"]
-"""What a run says of a claim."""
+Verdict = Literal["held", "not held", "depends", "undecided", "not measured"]
+"""What a run says of a claim. `depends`: ways to measure the same thing answer differently. `undecided`: the
+run is too small to say, or cells of it failed; more rigs would tell."""
+
+Measure = Literal["value", "ratio", "count", "share"]
+
+_ONLY_FOR: Mapping[str, tuple[Measure, ...]] = {
+    "rivals": ("count",),
+    "of": ("count",),
+    "against": ("ratio", "share"),
+    "within": ("share",),
+}
 
 
 class Statement(BaseModel):
@@ -17,6 +27,9 @@ class Statement(BaseModel):
 
     >>> Statement(label="fit [s]", metric="fit_s", method="abraham", below=3.0).expected
     '≤ 3'
+    >>> rivals = {"method": "abraham", "rivals": ("conventional",)}
+    >>> Statement(label="least", metric="fit_s", measure="count", above=3, of=4, **rivals).expected
+    '≥ 3 of 4'
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
@@ -29,23 +42,33 @@ class Statement(BaseModel):
     """The part of the report it speaks of."""
     metric: str
     """A column of the rows."""
+    over: str | None = None
+    """A column of the same rows that the first is divided by."""
     method: str
     options: Mapping[str, Any] = Field(default_factory=dict)
     """Options its rows have, at least."""
     against: str | None = None
     """The method it is compared with."""
-    rivals: tuple[str, ...] = ()
-    """The methods to win against."""
+    against_options: Mapping[str, Any] = Field(default_factory=dict)
+    """Options that one's rows have, at least."""
     against_group: str | None = None
     """Where that one's rows are, if elsewhere."""
-    measure: Literal["value", "ratio", "wins", "share"] = "value"
-    """The mean; the geometric mean of the ratio to `against`; the number of pairs where the method has
-    the least value of all `rivals`; the share of cells whose ratio is within `within`."""
+    rivals: tuple[str, ...] = ()
+    """The methods that it has to be less than, whatever their options. A rival without a number, because its
+    image does not show that much, is none that is less."""
+    measure: Measure = "value"
+    """The mean; the geometric mean of the ratio to `against`; the number of rigs on which the method has less
+    than each of `rivals`; the share of cells whose ratio is within `within`. Each is taken over rigs, of
+    the mean over a rig's motions of that over scenes of that over seeds."""
     within: tuple[float, float] | None = None
     above: float | None = None
     """True where the quantity is at least this."""
     below: float | None = None
     """True where the quantity is at most this."""
+    of: int | None = None
+    """Of how many rigs `above` is a count: 3 of 4 is claimed of 6 of 8, too."""
+    judges: bool = True
+    """Whether the claim stands on it; else it stands beside it, to compare with."""
 
     @model_validator(mode="after")
     def _can_be_false(self) -> Statement:
@@ -54,18 +77,23 @@ class Statement(BaseModel):
         least, most = self.bounds
         if not least <= most:
             raise ValueError(f"statement '{self.label}' is true from {least} to {most}; expected a range")
-        allowed = {"rivals": ["wins"], "against": ["ratio", "share"], "within": ["share"]}
-        for name, measures in allowed.items():
+        for name, measures in _ONLY_FOR.items():
             if bool(getattr(self, name)) != (self.measure in measures):
                 where = " and ".join(measures)
                 raise ValueError(f"statement '{self.label}' is a {self.measure}; `{name}` is for {where}")
+        if self.of is not None and not (self.above and self.below is None and self.above <= self.of):
+            raise ValueError(
+                f"statement '{self.label}' is true of {self.above} of {self.of} rigs; expected a count above "
+                "0 and at most as many"
+            )
         return self
 
     @property
     def bounds(self) -> tuple[float, float]:
-        """Least and greatest value for which the statement is true."""
+        """Least and greatest value for which the statement is true; of a count, shares of the rigs."""
+        rigs = self.of or 1
         return (
-            -math.inf if self.above is None else self.above,
+            -math.inf if self.above is None else self.above / rigs,
             math.inf if self.below is None else self.below,
         )
 
@@ -79,6 +107,8 @@ class Statement(BaseModel):
     @property
     def expected(self) -> str:
         """The bounds in words."""
+        if self.of is not None:
+            return f"≥ {self.above:g} of {self.of}"
         if self.above is not None and self.below is not None:
             return f"{self.above:g} to {self.below:g}"
         return f"≥ {self.above:g}" if self.above is not None else f"≤ {self.below:g}"
@@ -97,6 +127,28 @@ class Claim(BaseModel):
     name: str
     says: str
     """The claim in a sentence."""
-    statements: tuple[Statement, ...] = Field(min_length=1)
+    statements: tuple[Statement, ...]
     because: Mapping[Verdict, str]
-    """One sentence why, for each verdict it may get."""
+    """One sentence why, for each verdict it may get. Of `undecided` the run itself says why."""
+
+    @model_validator(mode="after")
+    def _stands_on_something(self) -> Claim:
+        if not any(statement.judges for statement in self.statements):
+            raise ValueError(f"claim '{self.name}' has no statement that judges it; expected one")
+        return self
+
+
+class SourcePart(BaseModel):
+    """An experiment, figure or option of what a report repeats, and what became of it.
+
+    >>> SourcePart(name="SURF features", status="changed", why="SIFT: SURF is patented.").status
+    'changed'
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
+
+    name: str
+    """What it is, and where in the source."""
+    status: Literal["done", "changed", "impossible"]
+    why: str
+    """Where it is to be found here, or why it is another thing, or none."""

@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, model_validator
 
-from rectbench.experiments.claims import Claim
+from rectbench.experiments.claims import Claim, SourcePart
 from rectbench.experiments.pair_sources import (
     Lenses,
     PairName,
@@ -204,6 +204,8 @@ class Report(StatedPairs, Rendering, GivenMatches, CellLimits):
     """Figures to draw; None draws the usual ones."""
     claims: tuple[Claim, ...] = ()
     """What is claimed somewhere, to be judged."""
+    source_parts: tuple[SourcePart, ...] = ()
+    """What the source of these experiments has, part by part, and what became of it here."""
     stated_seconds: Mapping[Literal["pose", "fit", "warp"], float] = Field(default_factory=dict)
     """Times somebody else stated, to stand beside the measured ones."""
 

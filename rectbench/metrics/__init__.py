@@ -14,6 +14,11 @@ from rectbench.metrics.energy import energy_convex_share as energy_convex_share
 from rectbench.metrics.log_distortion import log_distortion as log_distortion
 from rectbench.metrics.log_distortion import log_distortion_on_view as log_distortion_on_view
 from rectbench.metrics.order import order as order
+from rectbench.metrics.paper.reconstruction_sizes import ReconstructionSizes as ReconstructionSizes
+from rectbench.metrics.paper.row_error_rectified_features import (
+    RectifiedFeatureRowError as RectifiedFeatureRowError,
+)
+from rectbench.metrics.paper.view_at_source_size import ViewAtSourceSize as ViewAtSourceSize
 from rectbench.metrics.pose import Pose as Pose
 from rectbench.metrics.reconstruction import reconstruction_scores as reconstruction_scores
 from rectbench.metrics.row_error import RowError as RowError

@@ -35,23 +35,14 @@ def reconstruction_scores(reconstruction: Reconstruction, truth: Truth) -> dict[
     NaN where no pixel is counted. Raises InvalidInput for a truth about other cameras.
     """
     rect, left = reconstruction.rect, truth.rig.left
-    if rect.left.source.size != left.size:
-        raise InvalidInput(
-            f"the reconstruction is of {rect.left.source.width}x{rect.left.source.height} px images, "
-            f"the truth of {left.width}x{left.height}"
-        )
-    pixels = dense_pixels(left)
+    pixels = counted_pixels(truth)
     u, v = pixels.astype(int).T
-    counted = truth.visible_left[v, u] & np.isfinite(truth.depth_left[v, u])
-    pixels, u, v = pixels[counted], u[counted], v[counted]
+    error = depth_errors(reconstruction, truth, pixels)
 
     px_rect = rect.left.forward(pixels)
     disparity = reconstruction.disparity.at(px_rect)
     match = rect.right.inverse(px_rect - np.stack([disparity, np.zeros_like(disparity)], axis=-1))
     miss_px = np.linalg.norm(match - truth.right_pixels(u, v), axis=-1)
-    depth = np.linalg.norm(reconstruction.points_at(px_rect), axis=-1)
-    error = np.abs(depth / truth.depth_left[v, u].astype(np.float64) - 1)
-
     complete = error <= COMPLETE_WITHIN
     z = left.unproject(pixels)[0][:, 2]
     angle_deg = np.degrees(np.arccos(np.clip(z, -1, 1)))
@@ -70,6 +61,30 @@ def reconstruction_scores(reconstruction: Reconstruction, truth: Truth) -> dict[
         "depth_error_p95": _quantile(error, 0.95),
         **rings,
     }
+
+
+def counted_pixels(truth: Truth) -> FloatArray:
+    """The pixels [N, 2] of the left source image that depth is scored at: those that both cameras see."""
+    pixels = dense_pixels(truth.rig.left)
+    u, v = pixels.astype(int).T
+    counted: BoolArray = truth.visible_left[v, u] & np.isfinite(truth.depth_left[v, u])
+    return np.asarray(pixels[counted])
+
+
+def depth_errors(reconstruction: Reconstruction, truth: Truth, pixels: FloatArray) -> FloatArray:
+    """|depth / true depth - 1| [N] at whole pixels [N, 2] of the left source image; NaN without a depth.
+
+    Raises InvalidInput for a truth about other cameras.
+    """
+    source, left = reconstruction.rect.left.source, truth.rig.left
+    if source.size != left.size:
+        raise InvalidInput(
+            f"the reconstruction is of {source.width}x{source.height} px images, "
+            f"the truth of {left.width}x{left.height}"
+        )
+    u, v = pixels.astype(int).T
+    depth = np.linalg.norm(reconstruction.points_at(reconstruction.rect.left.forward(pixels)), axis=-1)
+    return np.asarray(np.abs(depth / truth.depth_left[v, u] - 1), dtype=np.float64)
 
 
 def _share(mask: BoolArray) -> float:

@@ -1,29 +1,43 @@
 """What the rows of a run say about the claims of its report.
 
-What is judged is the 95 % bootstrap interval of the measured value over pairs, and over the seeds of
-each: wholly within the bounds the statement is held, wholly outside not held; anything else depends. A
-cell that failed keeps a statement from being held. Statements of one clause measure the same thing in
-several ways: where these disagree, the clause depends. A claim is held where each of its clauses is, and
-not held where one of them is not.
+The unit is the rig: what was measured on one, over its motions, scenes and seeds, is one value of it. What is
+judged is the 95 % t interval of the mean over rigs (of logarithms, for a ratio): wholly within the bounds the
+statement is held, wholly outside not held, else undecided, as it is on fewer than three rigs. A count is held
+where as large a share of the rigs as claimed is reached, and not held where an exact binomial test refutes
+that share. A cell that failed keeps a statement from being held.
+
+Statements of one clause measure the same thing in several ways: it is held where all of them are, depends
+where some are and some are not, and is not held where some are not and none is. A claim is held where each of
+its clauses is, and not held where one of them is not.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Hashable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
-import numpy as np
-
+from rectbench.errors import InvalidInput
 from rectbench.experiments.claims import Claim, Statement, Verdict
 from rectbench.plugins.result import Result
-from rectbench.runs.bootstrap import Statistic, interval, stacked
-from rectbench.types import FloatArray
+from rectbench.statistics.intervals import (
+    Interval,
+    count_interval,
+    geometric_interval,
+    mean_interval,
+    nested_means,
+)
 
-CLAIM_RESAMPLES = 4000
+LEVEL = 0.05
+"""Of the exact test of a count."""
+TIE = 1e-6
+"""Values this close, relatively, are one: neither method is less than the other."""
 
 Place = tuple[str, str, str, str, int]
-"""Scene, rig, motion, pose, seed."""
+"""Rig, motion, scene, pose, seed."""
+
+_Numbers = dict[tuple[Hashable, ...], float]
+"""The number of each cell by its place and the method's options."""
 
 
 @dataclass(frozen=True)
@@ -31,18 +45,19 @@ class Measured:
     """What the rows say about one statement."""
 
     statement: Statement
-    mean: float
-    low: float
-    high: float
-    """The 95 % bootstrap interval."""
+    interval: Interval
+    """The mean over rigs with its 95 % interval; of a count, the share of the rigs."""
     verdict: Verdict
-    pairs_held: int
-    """On how many pairs the mean over seeds is within the bounds."""
-    pairs: int
-    cells: int
-    """How many cells, or paired cells, it stands on."""
-    failed: int
-    """How many more it should stand on."""
+    by_rig: Mapping[str, float] = field(default_factory=dict)
+    """The value of each rig; of a count, own value over the least of the rivals'."""
+    rigs_held: int = 0
+    """On how many rigs the value is as expected."""
+    failed: int = 0
+    """Cells that hold no measurement."""
+    absent: tuple[str, ...] = ()
+    """Rigs without a value: a method does not serve them, or its images do not show that much."""
+    remark: str = ""
+    """Why it is undecided, and how probable a count is."""
 
 
 @dataclass(frozen=True)
@@ -51,12 +66,16 @@ class Judged:
 
     claim: Claim
     verdict: Verdict
+    clauses: Mapping[str, Verdict]
     tests: tuple[Measured, ...]
 
     @property
     def because(self) -> str:
-        """Why it is so, as the claim states for this verdict."""
-        return self.claim.because.get(self.verdict, "")
+        """Why it is so, as the claim states for this verdict; else what the measurements lack."""
+        if self.verdict in self.claim.because:
+            return self.claim.because[self.verdict]
+        undecided = [t for t in self.tests if t.statement.judges and t.verdict == "undecided"]
+        return "; ".join(dict.fromkeys(t.remark for t in undecided if t.remark))
 
 
 def judged_claims(
@@ -69,128 +88,200 @@ def judged_claims(
 def _judged(claim: Claim, rows: Sequence[Result], columns: Collection[str]) -> Judged:
     # A column that nobody asked for is no failure.
     tests = tuple(_measured(s, rows if s.metric in columns else ()) for s in claim.statements)
-    clauses: dict[str, set[Verdict]] = {}
-    for statement, test in zip(claim.statements, tests, strict=True):
-        clauses.setdefault(statement.clause, set()).add(test.verdict)
-    verdicts = {verdicts.pop() if len(verdicts) == 1 else "depends" for verdicts in clauses.values()}
-    verdict: Verdict = "depends"
-    if len(verdicts) == 1:
-        (verdict,) = verdicts
-    elif "not held" in verdicts:
-        verdict = "not held"
-    return Judged(claim, verdict, tests)
+    ways: dict[str, list[Verdict]] = {}
+    for test in tests:
+        if test.statement.judges:
+            ways.setdefault(test.statement.clause, []).append(test.verdict)
+    clauses = {clause: _of_ways(verdicts) for clause, verdicts in ways.items()}
+    return Judged(claim, _of_clauses(list(clauses.values())), clauses, tests)
+
+
+def _of_ways(verdicts: Collection[Verdict]) -> Verdict:
+    """Of ways to measure one thing: refuted where it is by some and held by none."""
+    if len(set(verdicts)) == 1:
+        return next(iter(verdicts))
+    if "not held" in verdicts:
+        return "depends" if "held" in verdicts else "not held"
+    return "undecided"
+
+
+def _of_clauses(verdicts: Collection[Verdict]) -> Verdict:
+    """Of sentences that all have to be true."""
+    if len(set(verdicts)) == 1:
+        return next(iter(verdicts))
+    decided: tuple[Verdict, ...] = ("not held", "depends")
+    return next((verdict for verdict in decided if verdict in verdicts), "undecided")
 
 
 def _measured(statement: Statement, rows: Sequence[Result]) -> Measured:
-    by_pair, failed = _numbers(statement, rows)
-    cells = sum(map(len, by_pair))
-    mean = low = high = math.nan
-    verdict: Verdict = "not measured"
-    if len(by_pair) >= _pairs_needed(statement):
-        mean = float(_statistic(statement)(stacked(by_pair)))
-        low, high = interval(by_pair, _statistic(statement), CLAIM_RESAMPLES) if cells > 1 else (mean, mean)
-        verdict = _verdict(statement, low, high, failed)
-    if cells == 1:  # one number has no interval
-        low = high = math.nan
-    held = _pairs_held(statement, by_pair)
-    return Measured(statement, mean, low, high, verdict, held, len(by_pair), cells, failed)
-
-
-def _pairs_needed(statement: Statement) -> float:
-    """Of how many pairs a statement speaks at least; a run of fewer does not measure it."""
-    return max(1.0, statement.above or 0.0) if statement.measure == "wins" else 1.0
-
-
-def _numbers(statement: Statement, rows: Sequence[Result]) -> tuple[list[FloatArray], int]:
-    """The numbers [cells, columns] a statement stands on, one array a pair, and how many cells have none."""
-    others = _others(statement, rows)
-    found: dict[tuple[str, ...], list[list[float]]] = {}
-    failed = 0
-    for row in rows:
-        if not _speaks_of(row, statement):
-            continue
-        numbers = _numbers_of(row, others.get(_place(row), []), statement)
-        if all(map(math.isfinite, numbers)):
-            found.setdefault(_place(row)[:4], []).append(numbers)
-        else:
-            failed += 1
-    return [np.array(numbers) for numbers in found.values()], failed
-
-
-def _numbers_of(row: Result, others: Sequence[Result], statement: Statement) -> list[float]:
-    own, rivals = _value(row, statement.metric), [_value(other, statement.metric) for other in others]
+    own = _rows_of(rows, statement.group, statement.method, statement.options)
     if statement.measure == "value":
-        return [own]
-    if statement.measure == "wins":
-        return [own, *(rivals if len(rivals) == len(statement.rivals) else [math.nan])]
-    ratio = own / rivals[0] if len(rivals) == 1 and rivals[0] else math.nan
-    if statement.measure == "share" and math.isfinite(ratio):
-        low, high = statement.within or statement.bounds
-        return [float(low <= ratio <= high)]
-    return [ratio]
+        found = _alone(statement, own)
+    elif statement.measure == "count":
+        found = _against_each(statement, own, _rivals(statement, rows))
+    else:
+        group, method = statement.speaks_of[1]
+        found = _against(statement, own, _rows_of(rows, group, method, statement.against_options))
+    if not found.by_rig:
+        verdict: Verdict = "undecided" if found.failed or found.absent else "not measured"
+        remark = "no rig has a value" if verdict == "undecided" else ""
+        return Measured(statement, _NOTHING, verdict, failed=found.failed, absent=found.absent, remark=remark)
+    judge = _counted if statement.measure == "count" else _averaged
+    interval, rigs_held, verdict, remark = judge(statement, found.by_rig)
+    if verdict == "held" and found.failed:
+        verdict, remark = "undecided", f"cells that failed: {found.failed}"
+    return Measured(statement, interval, verdict, found.by_rig, rigs_held, found.failed, found.absent, remark)
 
 
-def _speaks_of(row: Result, statement: Statement) -> bool:
-    return (
-        row.cell.method == statement.method
-        and row.group == statement.group
-        and statement.options.items() <= row.options.items()
-    )
+_NOTHING = Interval(math.nan, math.nan, math.nan, 0)
+_Judgement = tuple[Interval, int, Verdict, str]
 
 
-def _others(statement: Statement, rows: Sequence[Result]) -> dict[Place, list[Result]]:
-    """The rows to compare with, by place: those of `against`, or of the rivals."""
-    wanted = statement.speaks_of[1:]
-    if statement.measure == "wins":  # no method is its own rival
-        wanted = [(group, method) for group, method in wanted if method != statement.method]
-    found: dict[Place, list[Result]] = {}
-    for row in rows:
-        if (row.group, row.cell.method) in wanted:
-            found.setdefault(_place(row), []).append(row)
+def _averaged(statement: Statement, by_rig: Mapping[str, float]) -> _Judgement:
+    over_rigs = geometric_interval if statement.measure == "ratio" else mean_interval
+    interval = over_rigs(by_rig.values())
+    least, most = statement.bounds
+    held = sum(least <= value <= most for value in by_rig.values())
+    if math.isnan(interval.low):
+        return interval, held, "undecided", f"{_rigs(len(by_rig))}: too few for an interval"
+    if interval.high < least or interval.low > most:
+        return interval, held, "not held", ""
+    if least <= interval.low and interval.high <= most:
+        return interval, held, "held", ""
+    return interval, held, "undecided", f"{_rigs(len(by_rig))}: the interval reaches beyond a bound"
+
+
+def _counted(statement: Statement, by_rig: Mapping[str, float]) -> _Judgement:
+    """Of a count: `by_rig` holds the largest ratio to a rival, below 1 where the method is least."""
+    from scipy.stats import binom
+
+    rigs, least = len(by_rig), sum(ratio < 1 - TIE for ratio in by_rig.values())
+    claimed, needed = statement.bounds[0], statement.of or 1
+    by_chance = float(binom.sf(least - 1, rigs, 1 / (1 + len(statement.rivals))))
+    as_few = float(binom.cdf(least, rigs, claimed))
+    verdict: Verdict = "undecided"
+    remark = f"as few if the claim were true: p = {as_few:.2g}"
+    if claimed == 1:
+        remark = f"claimed of all, not so on {rigs - least}"
+    if as_few < LEVEL:
+        verdict = "not held"
+    elif rigs < needed:
+        remark = f"{_rigs(rigs)} of the {needed} that it speaks of"
+    elif least / rigs >= claimed:
+        verdict, remark = "held", f"as many by chance: p = {by_chance:.2g}"
+    return count_interval(least, rigs), least, verdict, remark
+
+
+def _rigs(count: int) -> str:
+    return f"{count} rig" if count == 1 else f"{count} rigs"
+
+
+@dataclass(frozen=True)
+class _Found:
+    """The value of each rig, how many cells failed, and rigs of which some image does not show enough."""
+
+    by_rig: Mapping[str, float]
+    failed: int
+    absent: tuple[str, ...]
+
+
+def _alone(statement: Statement, own: Sequence[Result]) -> _Found:
+    numbers: _Numbers = {
+        (*_place(row), row.cell.options): _number(row, statement) for row in own if not _has_failed(row)
+    }
+    return _found(numbers, sum(map(_has_failed, own)))
+
+
+def _against(statement: Statement, own: Sequence[Result], others: Sequence[Result]) -> _Found:
+    """Ratios, or whether they are within; cells that have no partner say nothing."""
+    partners = {_place(other): other for other in others}
+    if len(partners) < len(others):
+        raise InvalidInput(
+            f"statement '{statement.label}' compares with several sets of options of {statement.against}; "
+            "expected against_options that name one"
+        )
+    pairs = [(row, partners[_place(row)]) for row in own if _place(row) in partners]
+    sound = [(row, other) for row, other in pairs if not (_has_failed(row) or _has_failed(other))]
+    failed = len(pairs) - len(sound)
+    numbers: _Numbers = {
+        (*_place(row), row.cell.options): _log_ratio(_number(row, statement), _number(other, statement))
+        for row, other in sound
+    }
+    if statement.within is not None:
+        low, high = map(_log, statement.within)
+        shares: _Numbers = {key: _share(low <= value <= high, value) for key, value in numbers.items()}
+        return _found(shares, failed)
+    found = _found(numbers, failed)
+    return replace(found, by_rig={rig: math.exp(value) for rig, value in found.by_rig.items()})
+
+
+def _against_each(statement: Statement, own: Sequence[Result], rivals: Sequence[Sequence[Result]]) -> _Found:
+    """The largest ratio to any rival: 0 where no rival has a number, infinite where they alone have one."""
+    if not all(rivals) or not own:
+        return _Found({}, 0, ())
+    alone = _alone(statement, own)
+    against = [(_against(statement, own, rows), _alone(statement, rows)) for rows in rivals]
+    by_rig = {
+        rig: max(found.by_rig.get(rig, 0.0) for found, _ in against) if math.isfinite(own_value) else math.inf
+        for rig, own_value in alone.by_rig.items()
+    }
+    lost = {rig: math.inf for rig in alone.absent if any(rig in rival.by_rig for _, rival in against)}
+    failed = alone.failed + sum(rival.failed for _, rival in against)
+    absent = tuple(rig for rig in alone.absent if rig not in lost)
+    return _Found({**by_rig, **lost}, failed, absent)
+
+
+def _found(numbers: _Numbers, failed: int) -> _Found:
+    by_rig = {str(rig): value for rig, value in nested_means(numbers).items()}
+    absent = dict.fromkeys(str(key[0]) for key in numbers if key[0] not in by_rig)
+    return _Found(by_rig, failed, tuple(absent))
+
+
+def _has_failed(row: Result) -> bool:
+    """What a method cannot serve is no failure of the measurement: it has no value there."""
+    return row.status not in ("ok", "unsupported")
+
+
+def _number(row: Result, statement: Statement) -> float:
+    value = row.metrics.get(statement.metric, math.nan)
+    if statement.over is None:
+        return value
+    whole = row.metrics.get(statement.over, math.nan)
+    return value / whole if whole else math.nan
+
+
+def _log_ratio(own: float, other: float) -> float:
+    """NaN where either is no positive number; nothing is that much less than infinity."""
+    return math.log(own / other) if 0 < own < math.inf and 0 < other < math.inf else math.nan
+
+
+def _log(bound: float) -> float:
+    return math.log(bound) if bound > 0 else -math.inf
+
+
+def _share(is_within: bool, value: float) -> float:
+    return math.nan if math.isnan(value) else float(is_within)
+
+
+def _rows_of(rows: Sequence[Result], group: str, method: str, options: Mapping[str, object]) -> list[Result]:
+    return [
+        row
+        for row in rows
+        if row.cell.method == method and row.group == group and options.items() <= row.options.items()
+    ]
+
+
+def _rivals(statement: Statement, rows: Sequence[Result]) -> list[list[Result]]:
+    """The rows of each rival under each of its sets of options; a method is no rival of its own."""
+    found: list[list[Result]] = []
+    for group, method in statement.speaks_of[1:]:
+        if method != statement.method:
+            of_method = _rows_of(rows, group, method, {})
+            variants = dict.fromkeys(row.cell.options for row in of_method)
+            found += [[row for row in of_method if row.cell.options == each] for each in variants or [""]]
     return found
 
 
 def _place(row: Result) -> Place:
-    """Where methods are compared: the pair, and the seed."""
-    return row.scene, row.rig, row.motion, row.pose, row.seed
-
-
-def _value(row: Result, metric: str) -> float:
-    return row.metrics.get(metric, math.nan) if row.ok else math.nan
-
-
-def _mean(numbers: FloatArray) -> FloatArray:
-    """The mean over pairs of the mean over the cells of each."""
-    mean: FloatArray = np.nanmean(numbers[..., 0], axis=-1).mean(axis=-1)
-    return mean
-
-
-def _geometric_mean(numbers: FloatArray) -> FloatArray:
-    mean: FloatArray = np.exp(_mean(np.log(numbers)))
-    return mean
-
-
-def _wins(numbers: FloatArray) -> FloatArray:
-    """On how many pairs the first column has the least mean."""
-    won = np.nanmean(numbers, axis=-2).argmin(axis=-1) == 0
-    count: FloatArray = won.sum(axis=-1, dtype=np.float64)
-    return count
-
-
-def _statistic(statement: Statement) -> Statistic:
-    return {"value": _mean, "ratio": _geometric_mean, "share": _mean, "wins": _wins}[statement.measure]
-
-
-def _verdict(statement: Statement, low: float, high: float, failed: int) -> Verdict:
-    least, most = statement.bounds
-    if high < least or low > most:
-        return "not held"
-    return "held" if least <= low and high <= most and not failed else "depends"
-
-
-def _pairs_held(statement: Statement, by_pair: Sequence[FloatArray]) -> int:
-    each = [float(_statistic(statement)(numbers[None])) for numbers in by_pair]
-    if statement.measure == "wins":
-        return round(sum(each))
-    least, most = statement.bounds
-    return sum(least <= value <= most for value in each)
+    """Where methods are compared: the pair, and the seed; the rig first, as the unit."""
+    return row.rig, row.motion, row.scene, row.pose, row.seed

@@ -2,6 +2,8 @@
 
 from rectbench.warps.description import load_rectification as load_rectification
 from rectbench.warps.description import save_rectification as save_rectification
+from rectbench.warps.fitted_profiles import Composed as Composed
+from rectbench.warps.fitted_profiles import PolynomialInverse as PolynomialInverse
 from rectbench.warps.frame import centre_resolution_px as centre_resolution_px
 from rectbench.warps.frame import rectifying_rotations as rectifying_rotations
 from rectbench.warps.frame import refuse_epipole_in_view as refuse_epipole_in_view

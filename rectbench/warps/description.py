@@ -25,6 +25,7 @@ from rectbench.calibrations.contract import Given
 from rectbench.calibrations.documents import Section, Source, errors_at, one_line, parse_document
 from rectbench.calibrations.formats.native import read_fields, rig_fields
 from rectbench.errors import InvalidInput, UnknownName
+from rectbench.warps.fitted_profiles import Composed, PolynomialInverse
 from rectbench.warps.frame import signed_baseline_m
 from rectbench.warps.profiles import Cubic, FramedProfile, Profile, Radial
 from rectbench.warps.rectification import Rectification
@@ -49,6 +50,9 @@ HEADER = """\
 #        cubic       c0 + c1 a + c2 a^2 + c3 a^3, rising from a = low to a = high
 #        radial      centre_px + focal_px r(a), r(a) = a (equidistant), 2 tan(a/2) (stereographic),
 #                    2 sin(a/2) (equisolid), sin a (orthographic), tan a (cylindrical)
+#        composed    the outer profile of the inner one's value in the place of a
+#        polynomial-inverse   a = q0 + q1 x + q2 x^2 + ... (the coefficients), where x goes from -1 at
+#                    value_low to 1 at value_high
 #
 # Rows of the two images correspond: v is the same in both. Disparity is u_left - u_right. With gamma_left
 # and gamma_right of two matched pixels, beta of their row and baseline_m = b (below 0 where the right
@@ -138,6 +142,7 @@ class Field:
 NUMBER = Field(float, lambda section, key: section.number(key, "a number"))
 TEXT = Field(str, lambda section, key: section.text(key, "a word"))
 MATRIX = Field(lambda matrix: matrix.tolist(), lambda section, key: section.matrix(key, "a 3x3 matrix", 3, 3))
+NUMBERS = Field(list, lambda section, key: tuple(section.numbers(key, "numbers")))
 TARGET = Field(
     lambda target: _fields(target, TARGETS),
     lambda section, key: _read(section.section(key, "a target"), "target", TARGETS),
@@ -158,6 +163,11 @@ TARGETS: Kinds = {
 PROFILES: Kinds = {
     "cubic": (Cubic, dict.fromkeys(("c0", "c1", "c2", "c3", "low", "high"), NUMBER)),
     "radial": (Radial, {"law": TEXT, "focal_px": NUMBER, "centre_px": NUMBER}),
+    "composed": (Composed, {"outer": PROFILE, "inner": PROFILE, "low": NUMBER, "high": NUMBER}),
+    "polynomial-inverse": (
+        PolynomialInverse,
+        {"coefficients": NUMBERS, "value_low": NUMBER, "value_high": NUMBER},
+    ),
     "framed": (FramedProfile, {"profile": PROFILE, "start": NUMBER, "scale": NUMBER}),
 }
 

@@ -17,7 +17,7 @@ from rectbench.reporting.tables.numbers import decade
 if TYPE_CHECKING:
     import matplotlib.figure
 
-ENERGY = "distortion_native"
+ENERGY = "distortion_native_grid"
 """What the fit minimises, as a column."""
 SAME_MINIMUM = 0.01
 """Ending at most this much above the default start's L, relatively, is ending in the same minimum."""

@@ -16,11 +16,12 @@ from rectbench.reporting.charts.starts import SAME_MINIMUM, Starts, start_study,
 from rectbench.reporting.names import named, one_line, pair_labels, slug
 from rectbench.reporting.tables.belief_table import belief_table
 from rectbench.reporting.tables.captions import averages_text, capitalised
+from rectbench.reporting.tables.claims_tables import claims_tables
 from rectbench.reporting.tables.main_tables import is_ranked, main_tables
 from rectbench.reporting.tables.numbers import MISSING, three_digits
 from rectbench.reporting.tables.pair_tables import pair_tables
 from rectbench.reporting.tables.rig_tables import distortion_tables, rig_table
-from rectbench.reporting.tables.run_tables import claims_tables, failures_table, photograph_tables
+from rectbench.reporting.tables.run_tables import failures_table, photograph_tables
 from rectbench.reporting.tables.table import (
     Entry,
     Heading,

@@ -1,12 +1,9 @@
-"""The tables of a run as a whole: claims and what they stand on, its photographs, what failed."""
+"""The tables of a run as a whole: its photographs, what failed."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
 
-from rectbench.plugins.metric import Column
 from rectbench.reporting.names import one_line, pair_labels
 from rectbench.reporting.tables.captions import counted
 from rectbench.reporting.tables.numbers import MISSING
@@ -17,101 +14,16 @@ from rectbench.reporting.tables.table import (
     Table,
     number,
     text_heading,
-    whole,
     words,
 )
 from rectbench.reporting.tables.tabulation import heading, measured
 from rectbench.runs.record import FoundPhotographs
 from rectbench.runs.run import Run
 
-if TYPE_CHECKING:
-    from rectbench.runs.judging import Judged, Measured
-
 COUNTED = ("pose_inliers", "row_error_features_matches", "row_error_board_points")
 
 TROUBLE = ("contradiction", "no_features")
 """What the cells of a pair note about its images and calibration."""
-
-
-def claims_tables(run: Run) -> Iterator[Table]:
-    """What is claimed and the verdict; then every measurement behind it."""
-    from rectbench.runs.judging import judged_claims
-
-    if claims := run.record.spec.claims:
-        judged = judged_claims(claims, run.results, run.table.columns)
-        yield verdicts_table(judged)
-        yield measurements_table(judged)
-
-
-def verdicts_table(judged: Sequence[Judged]) -> Table:
-    """A row a claim: what is said, whether it holds, why."""
-    rows = tuple(
-        (whole(i), words(one.claim.name), words(one.claim.says), _verdict(one.verdict), words(one.because))
-        for i, one in enumerate(judged, 1)
-    )
-    return Table(
-        kind="claims",
-        name="claims",
-        title="Claims and verdicts",
-        caption="A claim is held where each of its clauses is, not held where one is not; a clause depends "
-        "where ways to measure it disagree.",
-        headings=(
-            Heading("", "number"),
-            text_heading("claim"),
-            text_heading("what is said", "says", wraps=True),
-            text_heading("verdict"),
-            text_heading("why", "because", wraps=True),
-        ),
-        sections=(Section("", rows),),
-    )
-
-
-def measurements_table(judged: Sequence[Judged]) -> Table:
-    """Every measurement of every claim, a section a claim."""
-    return Table(
-        kind="measurements",
-        name="claims-measured",
-        title="What was measured for each claim",
-        caption="Means with 95 % bootstrap intervals over pairs, and over the seeds of each. Held: the whole "
-        "interval is as expected; not held: none of it; else it depends.",
-        headings=(
-            text_heading("clause"),
-            text_heading("measured"),
-            Heading("mean", "mean"),
-            Heading("from", "low", meaning="Lower end of the 95 % interval."),
-            Heading("to", "high", meaning="Upper end of the 95 % interval."),
-            text_heading("expected"),
-            Heading("pairs", "pairs", numeric=False, meaning="Pairs whose own mean is as expected."),
-            text_heading("verdict"),
-        ),
-        sections=tuple(
-            Section(f"{i}. {one.claim.name}: {one.verdict}", tuple(map(_measured_row, one.tests)))
-            for i, one in enumerate(judged, 1)
-        ),
-    )
-
-
-def _measured_row(test: Measured) -> tuple[Entry, ...]:
-    failed = f", {counted(test.failed, 'cell')} failed" if test.failed else ""
-    pairs = f"{test.pairs_held} of {test.pairs}{failed}"
-    return (
-        words(test.statement.clause),
-        words(test.statement.label),
-        *_numbers(test.mean, test.low, test.high),
-        words(test.statement.expected),
-        words(pairs),
-        _verdict(test.verdict),
-    )
-
-
-def _numbers(*values: float) -> list[Entry]:
-    """Three numbers of one kind: whole ones, as counts of pairs are, stay so."""
-    shown_as = Column("", "", is_count=all(math.isnan(value) or value.is_integer() for value in values))
-    return [number(value, shown_as) for value in values]
-
-
-def _verdict(verdict: str) -> Entry:
-    return Entry(verdict, verdict, failed=verdict in ("not held", "not measured"))
 
 
 def photograph_tables(run: Run) -> Iterator[Table]:
