@@ -12,7 +12,7 @@ from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import least_squares
+from scipy.optimize import OptimizeResult, least_squares
 
 from rectbench.errors import InvalidInput
 from rectbench.plugins.metric import Case, Column, Metric, Tolerance
@@ -148,20 +148,31 @@ def best_stretch(J: FloatArray) -> tuple[float, float]:
     if not (len(J) and scale > 0):
         return scale, scale
 
-    def descended(J: FloatArray, start: FloatArray) -> tuple[float, FloatArray]:
-        def stretched(logs: FloatArray) -> FloatArray:
-            with np.errstate(over="ignore"):  # a step too far has an L beyond all numbers, and is taken back
-                return np.nan_to_num(_residuals(J * np.exp(logs)[:, None])).ravel()
-
-        fit = least_squares(stretched, start, method="lm")
-        return fit.cost, fit.x
-
     # Near the collapse a long and narrow image can be better than a small one: two more starts.
     starts = np.log([[scale, scale], [4 * scale, scale / 4], [scale / 4, 4 * scale]])
     few, most = (J[:: max(1, len(J) // count)] for count in STRETCH_PIXELS)
-    _, near = min((descended(few, start) for start in starts), key=lambda found: found[0])
-    s_u, s_v = map(float, np.exp(descended(most, near)[1]))
+    near = min((_descended(few, start) for start in starts), key=lambda fit: fit.cost).x
+    s_u, s_v = map(float, np.exp(_descended(most, near).x))
     return s_u, s_v
+
+
+def _descended(J: FloatArray, start: FloatArray) -> OptimizeResult:
+    """Where L of Jacobians [N, 2, 2] is least, from logarithms of (s_u, s_v) on."""
+
+    def stretched(logs: FloatArray) -> FloatArray:
+        return np.nan_to_num(_residuals(J * np.exp(logs)[:, None])).ravel()
+
+    def slopes(logs: FloatArray) -> FloatArray:
+        a, b, c, d = entries(J * np.exp(logs)[:, None])
+        S, w1, w2 = np.abs(a * d - b * c), np.hypot(a, c), np.hypot(b, d)
+        by_logs = [[S, a * a / w1 - b * b / w2, 2 * a * b], [S, c * c / w1 - d * d / w2, 2 * c * d]]
+        found: FloatArray = np.nan_to_num(WEIGHTS[None, :, None] * by_logs).reshape(2, -1).T
+        return found
+
+    with np.errstate(
+        over="ignore", invalid="ignore"
+    ):  # a step too far has an L beyond all numbers: taken back
+        return least_squares(stretched, start, slopes, method="lm")
 
 
 PROTOCOLS: Mapping[Protocol, Callable[[FloatArray], tuple[float, float]]] = {

@@ -13,7 +13,7 @@ from rectbench.types import FloatArray
 from rectbench.warps import Rectification, Warp, rectifying_rotations
 from rectbench.warps.rectification import in_frame
 
-ORDER_PIXELS = 5_000
+ORDER_PIXELS = 2_000
 
 
 def order(rect: Rectification, rig: Rig) -> dict[str, float]:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
+import numpy as np
+
 from rectbench.cameras import Camera
 from rectbench.cameras.projection import projected_partials
 from rectbench.formulas.evaluation import evaluate_points
@@ -19,7 +21,8 @@ DENSE_PIXELS = 150_000
 def dense_pixels(camera: Camera, count: int = DENSE_PIXELS) -> FloatArray:
     """A regular grid of whole pixels [N, 2] that the lens sees; all of them in a small image."""
     step = max(1, round((camera.width * camera.height / count) ** 0.5))
-    grid = camera.pixel_grid()[step // 2 :: step, step // 2 :: step].reshape(-1, 2)
+    u, v = (np.arange(step // 2, side, step, dtype=float) for side in camera.size)
+    grid = np.stack(np.meshgrid(u, v), axis=-1).reshape(-1, 2)
     return grid[camera.unproject(grid)[1]]
 
 
