@@ -169,9 +169,8 @@ def _descended(J: FloatArray, start: FloatArray) -> OptimizeResult:
         found: FloatArray = np.nan_to_num(WEIGHTS[None, :, None] * by_logs).reshape(2, -1).T
         return found
 
-    with np.errstate(
-        over="ignore", invalid="ignore"
-    ):  # a step too far has an L beyond all numbers: taken back
+    # A step too far has an L beyond all numbers, and is taken back.
+    with np.errstate(over="ignore", invalid="ignore"):
         return least_squares(stretched, start, slopes, method="lm")
 
 

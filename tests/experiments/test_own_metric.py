@@ -126,7 +126,7 @@ def test_the_metrics_are_listed(shell: Shell) -> None:
     code, listed, _ = shell("list", "metrics")
     assert code == 0
     assert "row_error_board" in listed
-    assert "Together: distortion, distortion_detail" in listed
+    assert "Together: log_distortion, distortion" in listed
 
 
 BAD = {

@@ -186,7 +186,7 @@ def test_what_plugins_warn_of_does_not_reach_the_terminal(tmp_path: Path) -> Non
         "        yield rb.Drawing('warns', 'Warns', '', 0, draw)\n"
     )
     scene = write_scene(tmp_path, "wall", warn)
-    figures = ("bars", "scatter", "maps", str(figure))
+    figures = ("bars", "coverage-curve", "maps", str(figure))
     fields = {
         "scenes": (scene,),
         "figures": figures,

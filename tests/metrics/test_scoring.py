@@ -15,6 +15,7 @@ from rectbench.metrics.scoring import BUNDLES, digests_of, metrics_of, needs_of,
 from rectbench.plugins.catalogue import known
 from rectbench.plugins.metric import METRICS
 from rectbench.registry import registry
+from rectbench.scored import SeenView
 from rectbench.store.closure import PACKAGE, source_closure
 from tests.rigs_for_tests import points_before, rig
 
@@ -45,6 +46,10 @@ class Exact:
     @property
     def scored_view(self) -> rb.ScoredView:
         return rb.ScoredView.of(self.rig, count=500)
+
+    @property
+    def seen_view(self) -> SeenView:
+        return SeenView.of(self.rig)
 
     def features(self, *, by_estimate: bool) -> rb.Matches:
         return self.true_matches
