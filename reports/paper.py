@@ -5,8 +5,7 @@ import rectbench as rb
 from ._paper_claims import CLAIMS, FISHEYE, OPTIONS, OURS, PERSPECTIVE
 from ._paper_parts import PARTS
 
-LENSES = tuple(rig for rig in rb.fisheye_rigs() if rig != "tumvi-kb")
-"""tumvi-kb is another calibration of tumvi's cameras: not a lens of its own."""
+LENSES = rb.fisheye_rigs()
 
 FISHEYE_PAIRS = (
     ("street", "sony-as200v", "sideways"),

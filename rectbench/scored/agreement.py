@@ -158,9 +158,10 @@ def _check_distortion(places: _Places, delivered: DeliveredSide, table: tuple[Fl
     known = np.all([(entry > OUTSIDE).all(axis=-1) for entry in neighbours], axis=0)
     left, right, above, below = (entry[known] for entry in neighbours)
     inverses = np.stack([right - left, below - above], axis=-1) / 2
-    known[known] &= _determinants(inverses) > 0
-    inverses = inverses[_determinants(inverses) > 0]
-    if not len(inverses):
+    unfolded = np.ones(len(places.pixels), dtype=bool)
+    unfolded[np.flatnonzero(inner)[known]] = _determinants(inverses) > 0
+    places.require(unfolded, "the lookup table is folded")
+    if not len(inverses):  # nothing is shown
         return
     of_table, *_ = log_distortion_parts(np.linalg.inv(inverses).astype(np.float64))
     of_scored, *_ = log_distortion_parts(delivered.jacobians[chosen[known]])
