@@ -29,7 +29,7 @@ CALIBRATED_TWICE = frozenset({"tumvi-kb"})
 
 
 def fisheye_rigs(least_fov_deg: float = FISHEYE_DEG) -> tuple[str, ...]:
-    """The names of the rigs that ship with rectbench and whose two lenses see that far, each lens once, sorted.
+    """The names of the rigs that ship with rectbench and whose two lenses see that far, a lens once, sorted.
 
     The field of view is that across the image's diagonal, of the narrower lens.
 

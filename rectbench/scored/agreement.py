@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import hashlib
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,14 +19,18 @@ from rectbench.scored.delivered import Delivered, DeliveredSide, differences
 from rectbench.types import BoolArray, FloatArray
 from rectbench.warps.jacobians import entries, log_distortion_parts
 from rectbench.warps.lookup.resampling import SIDES, Side
-from rectbench.warps.lookup.tables import OUTSIDE, FloatMap
+from rectbench.warps.lookup.tables import OUTSIDE, FloatMap, lookup_table
 from rectbench.warps.rectification import LARGEST_SIDE_PX, Rectification, in_frame
+from rectbench.warps.targets import Framed
 from rectbench.warps.warp import Warp
 
 PLACES = 1_500
 """An image, each in the cell of a scored pixel."""
 TABLE_PX = 0.01
 """A table's entry is this near to the inverse map; float32 keeps 0.001 px of the largest image."""
+SHOWN_SHARE = 0.9
+"""Of the places beside shown pixels as many are shown, and have an entry; the rest lie at edges."""
+ROUNDING_PX = 0.1
 CLOSURE_PX = 1e-3
 """inverse(forward(x)) is this near to x."""
 LARGEST_TABLE = 4.0
@@ -42,32 +46,37 @@ def check_agreement(rect: Rectification, delivered: Delivered) -> None:
 
     Raised too where a side's map is mirrored or folded (det J ≤ 0) anywhere in the frame.
     """
-    fine = _at_least_as_fine(rect, delivered)
-    tables = {side: fine.maps(side) for side in SIDES}
+    tables = {side: rect.maps(side) for side in SIDES}
     rng = np.random.default_rng(_seed(tables))
     for side in SIDES:
-        places = _places(side, fine.warp(side), fine.size, delivered.side(side), rng)
-        _check_unfolded(delivered.side(side), places)
-        _check_inverse(fine.warp(side), places)
-        _check_jacobian(fine.warp(side), places)
-        _check_table(fine.warp(side), places, tables[side])
-        _check_distortion(places, delivered.side(side), tables[side])
-    if fine is not rect:
-        for side in SIDES:
-            places = _places(side, rect.warp(side), rect.size, delivered.side(side), rng)
-            _check_table(rect.warp(side), places, rect.maps(side))
+        scored, warp = delivered.side(side), rect.warp(side)
+        places = _places(side, warp, rect.size, scored, rng)
+        _check_unfolded(scored, places)
+        _check_inverse(warp, places)
+        _check_jacobian(warp, places)
+        _check_table(warp, places, tables[side])
+        fine = _at_least_as_fine(warp, rect.size, scored)
+        if fine is not None:
+            places = _places(side, *fine, scored, rng)
+            tables[side] = lookup_table(*fine)
+            _check_table(fine[0], places, tables[side])
+        _check_distortion(places, scored, tables[side])
 
 
-def _at_least_as_fine(rect: Rectification, delivered: Delivered) -> Rectification:
-    """The images at the source's resolution where they are coarser: small tables smooth what they hold."""
-    determinants = np.abs(_determinants(delivered.shown.both))
+def _at_least_as_fine(
+    warp: Warp, size: tuple[int, int], delivered: DeliveredSide
+) -> tuple[Warp, tuple[int, int]] | None:
+    """The image at the resolution of its source where it is coarser: small tables smooth their map."""
+    determinants = np.abs(_determinants(delivered.jacobians[delivered.shown]))
     shrunk = float(np.median(determinants)) if len(determinants) else 1.0
-    most = LARGEST_TABLE * math.prod(rect.left.source.size) / math.prod(rect.size)
+    most = LARGEST_TABLE * math.prod(warp.source.size) / math.prod(size)
     scale = math.sqrt(min(1 / shrunk, most)) if shrunk > 0 else 1.0
     if scale <= 1:
-        return rect
-    width, height = (min(LARGEST_SIDE_PX, round(scale * side)) for side in rect.size)
-    return rect.windowed((-0.5, -0.5), rect.size, (width, height))
+        return None
+    width, height = (min(LARGEST_SIDE_PX, round(scale * side)) for side in size)
+    # The harness's own frame: a target may make anything of `framed`.
+    window = Framed(warp.target, -0.5, -0.5, width / size[0], height / size[1])
+    return replace(warp, target=window), (width, height)
 
 
 def _seed(tables: dict[Side, tuple[FloatMap, FloatMap]]) -> int:
@@ -112,6 +121,11 @@ def _places(
     pixels = scored.redrawn(chosen, rng)
     px_rect, jacobians = differences(warp, pixels, DERIVATIVE_ARM_PX)
     there = in_frame(px_rect, size) & np.isfinite(jacobians).all(axis=(1, 2))
+    if len(there) and there.mean() < SHOWN_SHARE:
+        raise InvalidResult(
+            f"of the places beside {side} pixels that are shown {1 - there.mean():.0%} are not; expected at "
+            f"most {1 - SHOWN_SHARE:.0%}: the image has holes"
+        )
     return _Places(side, chosen[there], pixels[there], px_rect[there], jacobians[there])
 
 
@@ -140,6 +154,13 @@ def _check_table(warp: Warp, places: _Places, table: tuple[FloatMap, FloatMap]) 
     columns, rows = _nearest(places.px_rect, table[0].shape)
     entry = np.stack([layer[rows, columns] for layer in table], axis=-1).astype(float)
     expected = warp.inverse(np.stack([columns, rows], axis=-1).astype(float))
+    step = 1 / np.linalg.svd(places.by_differences, compute_uv=False)[:, 1]  # source pixels to the next entry
+    found = np.linalg.norm(entry - places.pixels, axis=-1) <= step + ROUNDING_PX
+    if len(found) and found.mean() < SHOWN_SHARE:
+        raise InvalidResult(
+            f"the {places.side} lookup table lacks {1 - found.mean():.0%} of the places that are mapped "
+            f"into it"
+        )
     there = np.isfinite(expected).all(axis=-1) & in_frame(expected, warp.source.size)
     near = ~there | (np.abs(entry - expected).max(axis=-1) <= TABLE_PX)
     places.require(near, "the lookup table is not the inverse map")

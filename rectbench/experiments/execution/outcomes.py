@@ -37,7 +37,7 @@ class Outcome:
 
 def outcome_of(error: BaseException) -> Outcome:
     """The outcome that an exception in a cell stands for."""
-    reason = " ".join(str(error).split())
+    reason = " ".join(str(error).encode("utf-8", "replace").decode("utf-8").split())
     match error:
         case Unsupported():
             return Outcome("unsupported", reason)
