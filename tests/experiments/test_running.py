@@ -32,6 +32,10 @@ from tests.experiments.fakes import (
 TIMES = ["fit_s", "maps_s", "warp_s"]
 
 MISBEHAVIOUR = {
+    "surrogate": "raise ValueError('half a \\ud800 letter')",
+    "subclass": "class Odd(rb.Rectification): pass\n"
+    "rect = rb.rectify(problem.rig, 'abraham')\n"
+    "return Odd(rect.rig, rect.left, rect.right, rect.size)",
     "exits": "os._exit(7)",
     "killed": "os.kill(os.getpid(), signal.SIGKILL)",
     "leaves": "sys.exit(3)",
@@ -79,6 +83,8 @@ def misbehaved(tmp_path_factory: pytest.TempPathFactory) -> pd.DataFrame:
         ("lacks", "unavailable", "a licence is missing"),
         ("text", "invalid", "text returned str; expected a Rectification"),
         ("nothing", "invalid", "nothing returned NoneType; expected a Rectification"),
+        ("surrogate", "error", r"ValueError: half a \? letter"),
+        ("subclass", "invalid", "subclass returned Odd; expected a Rectification itself"),
         ("nan", "invalid", "left.forward gives no finite pixel"),
         ("huge", "invalid", "1000000x10"),
         ("foreign", "invalid", "starts from another camera"),

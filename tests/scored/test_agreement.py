@@ -163,7 +163,54 @@ def mirrored() -> rb.Rectification:
     return with_warps(rect, lambda w: replace(w, target=rb.Perspective(flip @ w.target.matrix)))
 
 
+class Dots(Discs):
+    """Nothing is shown but discs about the scored pixels, and there the image is moved alone."""
+
+    def forward(self, px: Any) -> FloatArray:
+        px = np.asarray(px, dtype=float)
+        flat = px.reshape(-1, 2)
+        shown = self._nearest(flat)[0] <= self.radius_px
+        return np.where(shown[:, None], flat + 10.0, np.nan).reshape(px.shape)
+
+
+def dots() -> rb.Rectification:
+    view, rect = ScoredView.of(RIG), rb.rectify(RIG, method=HONEST)
+    sides = {}
+    for side in ("left", "right"):
+        warp = rect.warp(side)
+        sides[side] = Dots(warp.source, warp.R_rect_cam, warp.target, view.side(side).pixels, 0.51)
+    return replace(rect, **sides)
+
+
+@dataclass(frozen=True, eq=False)
+class OtherFrame(rb.Target):
+    """Smaller than the source, and where it is looked at more closely it is the source itself."""
+
+    target: rb.Target
+
+    @property
+    def constants(self) -> Any:
+        return {"target": self.target.constants}
+
+    def project_formula(self, c: Any, x: Any, y: Any, z: Any, xp: Any) -> Any:
+        u, v, ok = self.target.project_formula(c.target, x, y, z, xp)
+        return 0.9 * u, 0.9 * v, ok
+
+    def unproject_formula(self, c: Any, u: Any, v: Any, xp: Any) -> Any:
+        return self.target.unproject_formula(c.target, u, v, xp)
+
+    def framed(self, left: float, top: float, across: float, down: float) -> rb.Target:
+        return self.target
+
+
+def other_frame() -> rb.Rectification:
+    rect = rb.rectify(RIG, method=HONEST)
+    return with_warps(rect, lambda w: replace(w, target=OtherFrame(w.target)))
+
+
 FOUND_OUT = {
+    dots: "the image has holes",
+    other_frame: r"inverse\(forward\(x\)\) is not x, near pixel",
     discs_at_scored_pixels: "the map is folded or mirrored|lookup table has a log distortion of",
     discs_at_some_scored_pixels: r"inverse\(forward\(x\)\) is not x, near pixel",
     false_jacobian: "the stated jacobian is not the derivative of forward, near pixel",
