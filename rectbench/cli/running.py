@@ -80,7 +80,9 @@ def gate(
 def compare(
     a: Annotated[Path, Argument(metavar="A", help="A run's folder.")],
     b: Annotated[Path, Argument(metavar="B", help="Another.")],
-    metrics: Annotated[list[str] | None, Option(metavar="NAMES", help="Only these columns.")] = None,
+    metrics: Annotated[
+        list[str] | None, Option(metavar="NAMES", help="Only these columns; by default those that moved.")
+    ] = None,
 ) -> int:
     """Compare two runs cell by cell: how much each metric changed, with its 95 % interval over rigs."""
     from rectbench.cli.printing.running import show_comparison
@@ -93,7 +95,7 @@ def compare(
     for name in wanted:
         if name not in known:
             raise UnknownName("metric", name, known)
-    show_comparison(comparison, wanted or known)
+    show_comparison(comparison, wanted)
     return INCOMPLETE if comparison.table.empty else GOOD
 
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Collection
+from collections.abc import Collection, Hashable, Iterator, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from rich.box import SIMPLE_HEAD
 from rich.table import Table
@@ -13,10 +13,15 @@ from rich.text import Text
 
 from rectbench.cli.printing.screen import console, plain_table
 from rectbench.reporting.tables.main_tables import INTERVAL, main_tables
+from rectbench.reporting.tables.numbers import shown, signed
 from rectbench.runs.run import read_run
+from rectbench.runs.units import GEOMETRIC
 from rectbench.statistics.intervals import Interval
 
 if TYPE_CHECKING:
+    import pandas as pd
+
+    from rectbench.plugins.metric import Column
     from rectbench.reporting.tables.table import Table as Summary
     from rectbench.runs.comparing import Comparison
     from rectbench.runs.gating import Gating
@@ -48,14 +53,14 @@ def _as_wide_as(width: int, summary: Summary, page_only: Collection[str]) -> Tab
 
     Intervals stand on the page; here they would press the numbers.
     """
-    shown = [
+    columns = [
         i
         for i, heading in enumerate(summary.headings)
         if heading.key not in page_only and not heading.key.endswith(INTERVAL)
     ]
     table = Table(box=SIMPLE_HEAD, pad_edge=False)
     used: list[int] = []
-    for i in shown:
+    for i in columns:
         heading = summary.headings[i]
         lines = textwrap.wrap(heading.text, _HEADING_LETTERS)
         widest = max(map(len, [*lines, *(row[i].text for row in summary.rows)]))
@@ -65,7 +70,7 @@ def _as_wide_as(width: int, summary: Summary, page_only: Collection[str]) -> Tab
         side: Literal["left", "right"] = "right" if heading.numeric else "left"
         table.add_column(Text("\n".join(lines)), justify=side, width=widest)  # Text: [px] is no markup
     for row in summary.rows:
-        table.add_row(*(Text(row[i].text, style="bold" if row[i].best else "") for i in shown[: len(used)]))
+        table.add_row(*(Text(row[i].text, style="bold" if row[i].best else "") for i in columns[: len(used)]))
     return table
 
 
@@ -88,20 +93,39 @@ SHOWN_DIFFERENCES = 40
 
 
 def show_comparison(comparison: Comparison, metrics: Collection[str]) -> None:
-    """The paired differences of these metrics, a row a method and metric."""
-    headings = ("method", "metric", "pairs", "median A", "median B", "mean B - A", "95 % interval over rigs")
-    screen, table = console(), plain_table(*headings)
-    for row in comparison.table.to_dict("records"):
-        if row["metric"] not in metrics:
-            continue
-        found = Interval(row["difference"], row["low"], row["high"], int(row["rigs"]))
-        interval = found.why_none("rig") or f"{found.low:.3g} to {found.high:.3g}"
-        numbers = (f"{row[name]:.5g}" for name in ("median_a", "median_b"))
-        table.add_row(
-            row["method"], row["metric"], str(row["pairs"]), *numbers, f"{row['difference']:+.3g}", interval
+    """The paired differences, a table a part and pose: of these metrics; without any, of what moved."""
+    screen, table = console(), comparison.table
+    chosen = table["metric"].isin(metrics) if metrics else table["moved"].gt(0) & ~_is_of_rig(table["metric"])
+    for (part, pose), rows in table[chosen].groupby(["part", "pose"], sort=False):
+        title = f"{part}: {pose} pose" if part else f"{pose} pose"
+        screen.print(Text(title, style="bold"))
+        shown_table = plain_table(
+            *("method", "metric", "pairs", "moved", "median A", "median B"),
+            *("A to B", "95 % interval over rigs"),
         )
-    screen.print(table)
+        for row in rows.to_dict("records"):
+            shown_table.add_row(*_compared(row, comparison.columns[row["metric"]]))
+        screen.print(shown_table)
+        screen.print()
+    if not len(table[chosen]) and not comparison.unpaired:
+        screen.print("no cell differs")
     for line in comparison.unpaired[:SHOWN_DIFFERENCES]:
         screen.print(Text(line, style="yellow"), soft_wrap=True)
     if len(comparison.unpaired) > SHOWN_DIFFERENCES:
         screen.print(f"... and {len(comparison.unpaired) - SHOWN_DIFFERENCES} more cells in one run alone")
+
+
+def _is_of_rig(metrics: pd.Series[str]) -> pd.Series[bool]:
+    """Angles of view say what a rig has, and nothing about methods."""
+    return metrics.str.fullmatch(r"view_\d+_deg")
+
+
+def _compared(row: Mapping[Hashable, Any], column: Column) -> Iterator[str]:
+    found = Interval(row["difference"], row["low"], row["high"], int(row["rigs"]))
+    is_ratio = column.average == GEOMETRIC
+    scale = 100.0 if is_ratio else column.scale
+    unit = "%" if is_ratio else {"%": "points"}.get(column.unit, column.unit)
+    yield from (row["method"], column.full_heading, str(row["pairs"]), str(row["moved"]))
+    yield from (shown(row[name], column) for name in ("median_a", "median_b"))
+    yield f"{signed(scale * found.estimate)} {unit}".strip()
+    yield found.why_none("rig") or f"{signed(scale * found.low)} to {signed(scale * found.high)}"

@@ -42,6 +42,17 @@ def three_digits(value: float) -> str:
     return f"{_with_minus(mantissa)}×{_power_of_ten(int(exponent))}"
 
 
+def signed(value: float) -> str:
+    """A change with its sign, three significant digits; zero has none.
+
+    >>> signed(0.0123), signed(-12.34), signed(0.0)
+    ('+0.0123', '−12.3', '0')
+    """
+    if math.isinf(value):
+        return "+∞" if value > 0 else "−∞"
+    return f"+{three_digits(value)}" if value > 0 else three_digits(value)
+
+
 def decade(value: float) -> str:
     """A round value on a logarithmic axis: 0.001, 0.5, 20, 10⁴, 2×10⁵."""
     mantissa, exponent = f"{value:.2e}".split("e")
