@@ -72,7 +72,8 @@ def compare(a: Path, b: Path) -> Comparison:
         for metric, column in columns.items()
     ]
     table = pd.DataFrame(rows, columns=COLUMNS)
-    return Comparison(table[table["pairs"] > 0].reset_index(drop=True), columns, unpaired)
+    table = table[table["pairs"] > 0].reset_index(drop=True)
+    return Comparison(table.astype(dict.fromkeys(("pairs", "moved", "rigs"), int)), columns, unpaired)
 
 
 def _difference(cells: pd.DataFrame, column: Column) -> dict[str, float]:
