@@ -47,7 +47,8 @@ def test_fisheye_rigs_are_those_that_see_120_degrees_with_both_lenses() -> None:
     assert rb.fisheye_rigs() == tuple(
         name
         for name in rb.rig_names()
-        if min(map(widest_deg, (rb.load_rig(name).left, rb.load_rig(name).right))) >= 120
+        if name != "tumvi-kb"  # the lens of tumvi, once more
+        and min(map(widest_deg, (rb.load_rig(name).left, rb.load_rig(name).right))) >= 120
     )
     assert {"t265", "tumvi", "sony-as200v"} <= set(rb.fisheye_rigs())
     assert not {"bumblebee2", "perspective-shifted", "vi-sensor"} & set(rb.fisheye_rigs())

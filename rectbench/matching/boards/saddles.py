@@ -20,10 +20,14 @@ def refined_saddles(image: Grey | NDArray[np.float32], points: FloatArray, half:
     if not points.size:
         return points
     start = points.reshape(-1, 1, 2).astype(np.float32)
+    height, width = image.shape
+    with np.errstate(invalid="ignore"):
+        inside = ((start >= 0) & (start < [width, height])).all(axis=-1, keepdims=True)
+    start = np.where(inside, start, 0)
     found = cv2.cornerSubPix(image, start.copy(), (half, half), (-1, -1), STEPS)
     # A search that leaves its window is put back to where it started.
-    found = np.where((found == start).all(axis=-1, keepdims=True), np.nan, found)
-    return found.astype(np.float64).reshape(points.shape)
+    known = inside & (found != start).any(axis=-1, keepdims=True)
+    return np.where(known, found, np.nan).astype(np.float64).reshape(points.shape)
 
 
 def levels_at(image: Grey, pixels: FloatArray) -> FloatArray:
