@@ -43,8 +43,8 @@ class DistortionMaps(PairPicture):
     stem = "distortion-map"
     title = "Distortion maps"
     caption = (
-        "Native L of every pixel of both source images, one scale for all methods. The number is L over "
-        "the 500 pixels that the tables measure it at."
+        "Native L of every pixel of both source images, one scale for all methods. The number is native L, "
+        "the mean over the pixels that the method shows."
     )
 
     def draw(self, results: Sequence[Result], given: FigureData) -> Figure:
