@@ -1,8 +1,8 @@
 """Whether all that a rectification says of itself is one map: forward, inverse, derivative and tables.
 
-It is asked at places that follow from a digest of the lookup tables, so that no table can be made to fit them.
-Where the tables hold another distortion than the scored pixels do, beyond what sampling explains, the map was
-made for these.
+It is asked at places that follow from a digest of the lookup tables: no table can be made to fit them.
+Where the tables hold another distortion than the scored pixels do, beyond what sampling explains, the
+map was made for these.
 """
 
 from __future__ import annotations
