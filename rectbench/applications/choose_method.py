@@ -22,11 +22,11 @@ from rectbench.plugins.rectifier import METHODS, Problem, Rectifier, pose_proble
 from rectbench.registry import Plugin, registry
 from rectbench.rigs import Rig
 from rectbench.scored import Delivered, ScoredView, check_agreement
-from rectbench.scored.delivered import differences
+from rectbench.scored.differences import differences
 from rectbench.types import Images, Matches
 from rectbench.warps import Framing, Rectification, centre_rays, framed, rectifying_rotations
 from rectbench.warps.frame import angles
-from rectbench.warps.jacobians import log_distortion_parts
+from rectbench.warps.jacobians import LogStretches
 from rectbench.warps.lookup.resampling import SIDES
 
 COVERAGE = 0.95
@@ -189,7 +189,7 @@ def log_distortion_where(rect: Rectification, view: ScoredView, framing: Framing
             asked = scored.pixels[(np.abs(off) <= np.radians(framing.fov_deg) / 2).all(axis=-1)]
         found.append(differences(rect.warp(side), asked)[1])
     J = np.concatenate(found)
-    return log_distortion_parts(J)[0] if np.isfinite(J).all() else math.nan
+    return LogStretches.of(J).distortion()[0] if np.isfinite(J).all() else math.nan
 
 
 def _rank(candidate: Candidate, all_tried: Sequence[Candidate]) -> tuple[bool, bool, float]:

@@ -19,7 +19,7 @@ from rectbench.plugins.metric import Case, Column, Metric, Tolerance
 from rectbench.rigs import Rig
 from rectbench.types import FloatArray
 from rectbench.warps import Rectification
-from rectbench.warps.jacobians import Jacobians, entries, finite, losses
+from rectbench.warps.jacobians import Jacobians, entries, losses
 
 Protocol = Literal["native", "rescaled", "stretched"]
 WEIGHTS = np.sqrt([1.0, 0.5, 0.5])
@@ -46,6 +46,8 @@ class Distortion(float):
     """L of each pixel by side, `left` [N] and `right` [M]; NaN where a pixel is not mapped."""
     valid_share: float
     """Share of the pixels that the rectification maps."""
+    weights: FloatArray
+    """[K], of the mapped pixels, left then right."""
 
     @property
     def mean(self) -> float:
@@ -63,8 +65,11 @@ class Distortion(float):
         return self._quantile(0.95)
 
     def _quantile(self, share: float) -> float:
-        values = finite(np.concatenate([self.per_pixel["left"], self.per_pixel["right"]]))
-        return float(np.quantile(values, share)) if values.size else math.nan
+        values = np.concatenate([self.per_pixel["left"], self.per_pixel["right"]])
+        values = values[~np.isnan(values)]
+        if not values.size:
+            return math.nan
+        return float(np.quantile(values, share, weights=self.weights, method="inverted_cdf"))
 
 
 def distortion(
@@ -92,7 +97,7 @@ def distortion(
     return distortion_of(Jacobians.at(rect, pixels), protocol)
 
 
-def no_scale(J: FloatArray) -> tuple[float, float]:
+def no_scale(J: FloatArray, weights: FloatArray | None = None) -> tuple[float, float]:
     """The scales of the native protocol."""
     return 1.0, 1.0
 
@@ -101,16 +106,18 @@ def distortion_of(jacobians: Jacobians, protocol: Protocol = "native") -> Distor
     """The distortion of Jacobians already computed; see `distortion`."""
     if protocol not in PROTOCOLS:
         raise InvalidInput(f"protocol is {protocol!r}; expected one of {', '.join(PROTOCOLS)}")
-    both = jacobians.both
-    scales = PROTOCOLS[protocol](both)
-    per_pixel = {
-        side: _terms(getattr(jacobians, side) * np.array(scales)[:, None]) for side in ("left", "right")
-    }
-    terms = _terms(both * np.array(scales)[:, None])
-    score = Distortion(terms.sum(axis=0).mean() if len(both) else math.nan)
+    scales = PROTOCOLS[protocol](jacobians.both, jacobians.weights)
+    scaled = (J * np.array(scales)[:, None] for J in (jacobians.left, jacobians.right))
+    per_pixel = dict(zip(("left", "right"), map(_terms, scaled), strict=True))
+    means = np.full(3, math.nan)
+    if len(jacobians.both):
+        terms = np.concatenate(list(per_pixel.values()), axis=1)[:, jacobians.exist]
+        means = terms @ jacobians.weights / jacobians.weights.sum()
+    score = Distortion(means.sum())
     score.protocol, score.scales, score.valid_share = protocol, scales, jacobians.valid_share
-    score.terms = dict(zip(("area", "ratio", "skew"), map(float, _mean(terms)), strict=True))
+    score.terms = dict(zip(("area", "ratio", "skew"), map(float, means), strict=True))
     score.per_pixel = {side: values.sum(axis=0) for side, values in per_pixel.items()}
+    score.weights = jacobians.weights
     return score
 
 
@@ -124,11 +131,7 @@ def _residuals(J: FloatArray) -> FloatArray:
     return weighted
 
 
-def _mean(values: FloatArray) -> FloatArray:
-    return values.mean(axis=-1) if values.shape[-1] else np.full(values.shape[:-1], math.nan)
-
-
-def best_scale(J: FloatArray) -> tuple[float, float]:
+def best_scale(J: FloatArray, weights: FloatArray | None = None) -> tuple[float, float]:
     """The single scale s with the least L, twice.
 
     L(s) = mean[(s² S - 1)² + s² r + s⁴ k] is a parabola in s², so its minimum is in closed form.
@@ -137,36 +140,40 @@ def best_scale(J: FloatArray) -> tuple[float, float]:
         return 1.0, 1.0
     S = losses(*entries(J), np)[0] + 1
     _, ratio, skew = _terms(J)
-    square = (2 * S.mean() - ratio.mean()) / (2 * (np.square(S).mean() + skew.mean()))
-    scale = math.sqrt(max(0.0, float(square)))
+    S_mean, r_mean, fourth = (np.average(x, weights=weights) for x in (S, ratio, np.square(S) + skew))
+    scale = math.sqrt(max(0.0, float((2 * S_mean - r_mean) / (2 * fourth))))
     return scale, scale
 
 
-def best_stretch(J: FloatArray) -> tuple[float, float]:
+def best_stretch(J: FloatArray, weights: FloatArray | None = None) -> tuple[float, float]:
     """The scales (s_u, s_v) with the least L, the same for both images."""
-    scale, _ = best_scale(J)
+    scale, _ = best_scale(J, weights)
     if not (len(J) and scale > 0):
         return scale, scale
 
     # Near the collapse a long and narrow image can be better than a small one: two more starts.
     starts = np.log([[scale, scale], [4 * scale, scale / 4], [scale / 4, 4 * scale]])
-    few, most = (J[:: max(1, len(J) // count)] for count in STRETCH_PIXELS)
-    near = min((_descended(few, start) for start in starts), key=lambda fit: fit.cost).x
-    s_u, s_v = map(float, np.exp(_descended(most, near).x))
+    roots = np.ones(len(J)) if weights is None else np.sqrt(weights)
+    few, most = (slice(None, None, max(1, len(J) // count)) for count in STRETCH_PIXELS)
+    near = min((_descended(J[few], roots[few], start) for start in starts), key=lambda fit: fit.cost).x
+    s_u, s_v = map(float, np.exp(_descended(J[most], roots[most], near).x))
     return s_u, s_v
 
 
-def _descended(J: FloatArray, start: FloatArray) -> OptimizeResult:
-    """Where L of Jacobians [N, 2, 2] is least, from logarithms of (s_u, s_v) on."""
+def _descended(J: FloatArray, roots: FloatArray, start: FloatArray) -> OptimizeResult:
+    """Where L of Jacobians [N, 2, 2] is least, from logarithms of (s_u, s_v) on.
+
+    `roots` [N] are those of their weights.
+    """
 
     def stretched(logs: FloatArray) -> FloatArray:
-        return np.nan_to_num(_residuals(J * np.exp(logs)[:, None])).ravel()
+        return np.nan_to_num(roots * _residuals(J * np.exp(logs)[:, None])).ravel()
 
     def slopes(logs: FloatArray) -> FloatArray:
         a, b, c, d = entries(J * np.exp(logs)[:, None])
         S, w1, w2 = np.abs(a * d - b * c), np.hypot(a, c), np.hypot(b, d)
         by_logs = [[S, a * a / w1 - b * b / w2, 2 * a * b], [S, c * c / w1 - d * d / w2, 2 * c * d]]
-        found: FloatArray = np.nan_to_num(WEIGHTS[None, :, None] * by_logs).reshape(2, -1).T
+        found: FloatArray = np.nan_to_num(roots * WEIGHTS[None, :, None] * by_logs).reshape(2, -1).T
         return found
 
     # A step too far has an L beyond all numbers, and is taken back.
@@ -174,11 +181,14 @@ def _descended(J: FloatArray, start: FloatArray) -> OptimizeResult:
         return least_squares(stretched, start, slopes, method="lm")
 
 
-PROTOCOLS: Mapping[Protocol, Callable[[FloatArray], tuple[float, float]]] = {
+PROTOCOLS: Mapping[Protocol, Callable[[FloatArray, FloatArray], tuple[float, float]]] = {
     "native": no_scale,
     "rescaled": best_scale,
     "stretched": best_stretch,
 }
+
+
+SCALED: tuple[Protocol, ...] = ("rescaled", "stretched")
 
 
 def distortion_column(key: str, heading: str, meaning: str, **more: Any) -> Column:
@@ -221,7 +231,8 @@ class DistortionMetric(Metric):
     def compute(self, case: Case) -> dict[str, float]:
         """L of both images together, by the harness's own derivative of the map."""
         shown = case.delivered.shown
-        return {f"distortion_{name}": float(distortion_of(shown, name)) for name in PROTOCOLS}
+        scaled = {f"distortion_{name}": float(distortion_of(shown, name)) for name in SCALED}
+        return {"distortion_native": float(case.once(_native)), **scaled}
 
 
 class DistortionDetail(Metric):
@@ -253,10 +264,14 @@ class DistortionDetail(Metric):
 
     def compute(self, case: Case) -> dict[str, float]:
         """Of both images together."""
-        native = distortion_of(case.delivered.shown, "native")
+        native = case.once(_native)
         return {
             "distortion_native_median": native.median,
             "distortion_native_p95": native.p95,
             "distortion_native_grid": float(distortion_of(Jacobians.at(case.rect))),
             **{f"distortion_native_{term}": value for term, value in native.terms.items()},
         }
+
+
+def _native(case: Case) -> Distortion:
+    return distortion_of(case.delivered.shown)

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import math
-
 from rectbench.metrics.distortion import distortion_column
 from rectbench.plugins.metric import Case, Column, Metric, Tolerance
 from rectbench.rigs import Rig
 from rectbench.scored import SHARES, Delivered, ScoredView
 from rectbench.warps import Rectification
-from rectbench.warps.jacobians import Jacobians, log_distortion_parts
+from rectbench.warps.jacobians import Jacobians, LogStretches
 
 RANKING_SHARE = 0.95
 """Methods are ranked on this share of the view."""
@@ -29,7 +27,7 @@ def log_distortion(jacobians: Jacobians) -> dict[str, float]:
     >>> round(found["log_distortion_area"] / found["log_distortion"], 1) < 1
     True
     """
-    return dict(zip(PARTS, log_distortion_parts(jacobians.both), strict=True))
+    return dict(zip(PARTS, LogStretches.of(jacobians.both).distortion(jacobians.weights), strict=True))
 
 
 def log_distortion_on_view(rect: Rectification, rig: Rig, share: float = RANKING_SHARE) -> float:
@@ -45,8 +43,7 @@ def log_distortion_on_view(rect: Rectification, rig: Rig, share: float = RANKING
     >>> log_distortion_on_view(rb.rectify(rig, method="conventional"), rig)
     nan
     """
-    delivered = Delivered.of(rect, ScoredView.of(rig))
-    return log_distortion_parts(delivered.within(share).both)[0] if delivered.keeps(share) else math.nan
+    return Delivered.of(rect, ScoredView.of(rig)).log_distortion(share)
 
 
 def share_key(share: float) -> str:
@@ -100,8 +97,5 @@ class LogDistortion(Metric):
     def compute(self, case: Case) -> dict[str, float]:
         """Of both images together, by the harness's own derivative of the map."""
         delivered = case.delivered
-        on_shares = {
-            share_key(share): log_distortion_parts(delivered.within(share).both)[0]
-            for share in delivered.shares_kept
-        }
+        on_shares = {share_key(share): delivered.log_distortion(share) for share in delivered.shares_kept}
         return on_shares | log_distortion(delivered.shown)

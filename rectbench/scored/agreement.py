@@ -1,27 +1,26 @@
 """Whether all that a rectification says of itself is one map: forward, inverse, derivative and tables.
 
-It is asked at places that follow from a digest of the lookup tables: no table can be made to fit them.
-Where the tables hold another distortion than the scored pixels do, beyond what sampling explains, the
-map was made for these.
+It is asked at places that follow from a digest of what is scored, the pieces of the lookup tables: none can
+be made to fit them.
 """
 
 from __future__ import annotations
 
 import hashlib
-import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rectbench.errors import InvalidResult
-from rectbench.scored.delivered import Delivered, DeliveredSide, differences
+from rectbench.scored.delivered import Delivered, DeliveredSide
+from rectbench.scored.differences import differences
+from rectbench.scored.pieces import Pieces, Sheet
 from rectbench.types import BoolArray, FloatArray
-from rectbench.warps.jacobians import entries, log_distortion_parts
+from rectbench.warps.jacobians import LogStretches, entries, singular_values
 from rectbench.warps.lookup.resampling import SIDES, Side
-from rectbench.warps.lookup.tables import OUTSIDE, FloatMap, lookup_table
-from rectbench.warps.rectification import LARGEST_SIDE_PX, Rectification, in_frame
-from rectbench.warps.targets import Framed
+from rectbench.warps.lookup.tables import OUTSIDE
+from rectbench.warps.rectification import Rectification, in_frame
 from rectbench.warps.warp import Warp
 
 PLACES = 1_500
@@ -29,16 +28,15 @@ PLACES = 1_500
 TABLE_PX = 0.01
 """A table's entry is this near to the inverse map; float32 keeps 0.001 px of the largest image."""
 SHOWN_SHARE = 0.9
-"""Of the places beside shown pixels as many are shown, and have an entry; the rest lie at edges."""
+"""Of what is said to be shown as much is shown, and has an entry; the rest lies at edges."""
 ROUNDING_PX = 0.1
 CLOSURE_PX = 1e-3
 """inverse(forward(x)) is this near to x."""
-LARGEST_TABLE = 4.0
-"""Entries of a table that is made for this alone, in pixels of the source image."""
 DERIVATIVE_SHARE, DERIVATIVE_ARM_PX = 5e-3, 5e-3
 """The stated derivative is this near to differences over so short an arm, by the largest entry there."""
 DISTORTION_SHARE, DISTORTION_FLOOR = 0.01, 2e-3
-"""The tables' log distortion is this near to the scored pixels', of which it is an independent sample."""
+"""A table's log distortion between neighbouring entries is this near to that between distant ones."""
+FOLDED = "the map is folded or mirrored (det J ≤ 0)"
 
 
 def check_agreement(rect: Rectification, delivered: Delivered) -> None:
@@ -46,45 +44,58 @@ def check_agreement(rect: Rectification, delivered: Delivered) -> None:
 
     Raised too where a side's map is mirrored or folded (det J ≤ 0) anywhere in the frame.
     """
-    tables = {side: rect.maps(side) for side in SIDES}
-    rng = np.random.default_rng(_seed(tables))
+    rng = np.random.default_rng(_seed(delivered))
     for side in SIDES:
         scored, warp = delivered.side(side), rect.warp(side)
+        _check_unfolded(side, scored.pieces)
+        _check_holes(side, scored)
         places = _places(side, warp, rect.size, scored, rng)
-        _check_unfolded(scored, places)
+        places.require(_determinants(places.by_differences) > 0, FOLDED)
         _check_inverse(warp, places)
         _check_jacobian(warp, places)
-        _check_table(warp, places, tables[side])
-        fine = _at_least_as_fine(warp, rect.size, scored)
-        if fine is not None:
-            places = _places(side, *fine, scored, rng)
-            tables[side] = lookup_table(*fine)
-            _check_table(fine[0], places, tables[side])
-        _check_distortion(places, scored, tables[side])
+        _check_table(places, scored.delivered)
+        sheet = scored.pieces.sheet
+        if sheet.scale != (1.0, 1.0):
+            places = _places(side, sheet.warp, sheet.size, scored, rng)
+            _check_table(places, sheet)
+        _check_distortion(places, scored.pieces)
 
 
-def _at_least_as_fine(
-    warp: Warp, size: tuple[int, int], delivered: DeliveredSide
-) -> tuple[Warp, tuple[int, int]] | None:
-    """The image at the resolution of its source where it is coarser: small tables smooth their map."""
-    determinants = np.abs(_determinants(delivered.jacobians[delivered.shown]))
-    shrunk = float(np.median(determinants)) if len(determinants) else 1.0
-    most = LARGEST_TABLE * math.prod(warp.source.size) / math.prod(size)
-    scale = math.sqrt(min(1 / shrunk, most)) if shrunk > 0 else 1.0
-    if scale <= 1:
-        return None
-    width, height = (min(LARGEST_SIDE_PX, round(scale * side)) for side in size)
-    # The harness's own frame: a target may make anything of `framed`.
-    window = Framed(warp.target, -0.5, -0.5, width / size[0], height / size[1])
-    return replace(warp, target=window), (width, height)
-
-
-def _seed(tables: dict[Side, tuple[FloatMap, FloatMap]]) -> int:
-    """From every column number of both tables."""
+def _seed(delivered: Delivered) -> int:
+    """From every entry that is scored: who changes a score changes where it is looked at."""
     found = hashlib.sha256()
-    for map_x, _ in tables.values():
-        found.update(np.ascontiguousarray(map_x).tobytes())
+    for side in SIDES:
+        found.update(np.ascontiguousarray(delivered.side(side).pieces.jacobians).tobytes())
     return int.from_bytes(found.digest()[:8], "little")
+
+
+def _check_unfolded(side: Side, pieces: Pieces) -> None:
+    folded = np.flatnonzero(~(pieces.areas_px > 0))
+    if len(folded):
+        u, v = pieces.middles[:, folded[0]]
+        raise InvalidResult(
+            f"the {side} lookup table is folded or mirrored, near pixel ({u:.0f}, {v:.0f}) of the source "
+            f"image and in {len(folded) / len(pieces.areas_px):.1%} of its pieces"
+        )
+
+
+def _check_holes(side: Side, delivered: DeliveredSide) -> None:
+    """What is said to be shown of the view is in the pieces of the table, all but rims."""
+    kept = delivered.kept / max(1, len(delivered.shown))
+    held = float(delivered.shares(kept).sum())
+    if held < SHOWN_SHARE * kept:
+        raise InvalidResult(
+            f"the {side} lookup table shows {held:.0%} of the view, and {kept:.0%} are mapped into it: the "
+            f"image has holes"
+        )
+    found = delivered.pieces.hold(
+        delivered.scored.pixels[delivered.shown], delivered.px_rect[delivered.shown]
+    )
+    if len(found) and found.mean() < SHOWN_SHARE:
+        raise InvalidResult(
+            f"the {side} lookup table shows something else at {1 - found.mean():.0%} of the pixels that are "
+            f"mapped into it"
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,14 +140,6 @@ def _places(
     return _Places(side, chosen[there], pixels[there], px_rect[there], jacobians[there])
 
 
-def _check_unfolded(delivered: DeliveredSide, places: _Places) -> None:
-    shown = np.flatnonzero(delivered.shown)
-    px_rect, jacobians = delivered.px_rect[shown], delivered.jacobians[shown]
-    scored = _Places(places.side, shown, delivered.scored.pixels[shown], px_rect, jacobians)
-    for where in (scored, places):
-        where.require(_determinants(where.by_differences) > 0, "the map is folded or mirrored (det J ≤ 0)")
-
-
 def _check_inverse(warp: Warp, places: _Places) -> None:
     off = np.linalg.norm(warp.inverse(places.px_rect) - places.pixels, axis=-1)
     places.require(off <= CLOSURE_PX, "inverse(forward(x)) is not x")
@@ -149,29 +152,31 @@ def _check_jacobian(warp: Warp, places: _Places) -> None:
     places.require(off <= DERIVATIVE_SHARE * scale, "the stated jacobian is not the derivative of forward")
 
 
-def _check_table(warp: Warp, places: _Places, table: tuple[FloatMap, FloatMap]) -> None:
+def _check_table(places: _Places, sheet: Sheet) -> None:
     """Entries are compared with the inverse at their own pixels; at the rim of the view one may see more."""
-    columns, rows = _nearest(places.px_rect, table[0].shape)
-    entry = np.stack([layer[rows, columns] for layer in table], axis=-1).astype(float)
-    expected = warp.inverse(np.stack([columns, rows], axis=-1).astype(float))
-    step = 1 / np.linalg.svd(places.by_differences, compute_uv=False)[:, 1]  # source pixels to the next entry
+    columns, rows = _nearest(places.px_rect, sheet.table[0].shape)
+    entry = np.stack([layer[rows, columns] for layer in sheet.table], axis=-1).astype(float)
+    expected = sheet.warp.inverse(np.stack([columns, rows], axis=-1).astype(float))
+    _, small = singular_values(*entries(places.by_differences), np)
+    step = 1 / small  # source pixels to the next entry
     found = np.linalg.norm(entry - places.pixels, axis=-1) <= step + ROUNDING_PX
     if len(found) and found.mean() < SHOWN_SHARE:
         raise InvalidResult(
             f"the {places.side} lookup table lacks {1 - found.mean():.0%} of the places that are mapped "
             f"into it"
         )
-    there = np.isfinite(expected).all(axis=-1) & in_frame(expected, warp.source.size)
+    there = np.isfinite(expected).all(axis=-1) & in_frame(expected, sheet.warp.source.size)
     near = ~there | (np.abs(entry - expected).max(axis=-1) <= TABLE_PX)
     places.require(near, "the lookup table is not the inverse map")
 
 
-def _check_distortion(places: _Places, delivered: DeliveredSide, table: tuple[FloatMap, FloatMap]) -> None:
-    """The tables' own distortion, by differences between entries two apart, against the scored pixels'."""
-    height, width = table[0].shape
+def _check_distortion(places: _Places, pieces: Pieces) -> None:
+    """The table's own distortion, by differences between entries two apart, against that of its pieces."""
+    table, (width, height) = pieces.sheet.table, pieces.sheet.size
     columns, rows = np.rint(places.px_rect).astype(np.intp).T
-    inner = (columns > 0) & (columns < width - 1) & (rows > 0) & (rows < height - 1)
-    columns, rows, chosen = columns[inner], rows[inner], places.chosen[inner]
+    piece = pieces.at(places.px_rect)
+    inner = (piece >= 0) & (columns > 0) & (columns < width - 1) & (rows > 0) & (rows < height - 1)
+    columns, rows, piece = columns[inner], rows[inner], piece[inner]
     neighbours = [
         np.stack([layer[rows + down, columns + across] for layer in table], axis=-1).astype(float)
         for across, down in ((-1, 0), (1, 0), (0, -1), (0, 1))
@@ -184,12 +189,12 @@ def _check_distortion(places: _Places, delivered: DeliveredSide, table: tuple[Fl
     places.require(unfolded, "the lookup table is folded")
     if not len(inverses):  # nothing is shown
         return
-    of_table, *_ = log_distortion_parts(np.linalg.inv(inverses).astype(np.float64))
-    of_scored, *_ = log_distortion_parts(delivered.jacobians[chosen[known]])
-    if abs(of_table - of_scored) > DISTORTION_SHARE * of_table + DISTORTION_FLOOR:
+    of_entries, *_ = LogStretches.of(np.linalg.inv(inverses).astype(np.float64)).distortion()
+    of_pieces, *_ = LogStretches.of(pieces.jacobians[piece[known]]).distortion()
+    if abs(of_entries - of_pieces) > DISTORTION_SHARE * of_entries + DISTORTION_FLOOR:
         raise InvalidResult(
-            f"the {places.side} lookup table has a log distortion of {of_table:.4g}, and the scored pixels "
-            f"beside its entries {of_scored:.4g}: the map is another one there"
+            f"the {places.side} lookup table has a log distortion of {of_entries:.4g} between entries two "
+            f"apart, and {of_pieces:.4g} between those farther apart: the map is another one there"
         )
 
 

@@ -1,60 +1,71 @@
-"""What a rectification does at the scored pixels: the derivative of the map itself, as it is shown."""
+"""What a rectification does to the view of its rig: taken from its lookup tables, as they are delivered."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
-from rectbench.scored.view import ARM_PX, SHARES, ScoredPixels, ScoredView
+from rectbench.scored.pieces import Pieces, Sheet
+from rectbench.scored.view import SHARES, ScoredPixels, ScoredView
 from rectbench.types import BoolArray, FloatArray
-from rectbench.warps.jacobians import Jacobians
-from rectbench.warps.lookup.resampling import Side
+from rectbench.warps.jacobians import Jacobians, LogStretches
+from rectbench.warps.lookup.resampling import SIDES, Side
 from rectbench.warps.rectification import Rectification, in_frame
-from rectbench.warps.warp import Warp
-
-CROSS = np.array([[0.0, 0.0], [-1.0, 0.0], [1.0, 0.0], [0.0, -1.0], [0.0, 1.0]])
 
 
 @dataclass(frozen=True, eq=False)
 class DeliveredSide:
-    """One image's map at its scored pixels."""
+    """One image's map: where its scored pixels go, and the pieces of its table."""
 
     scored: ScoredPixels
     px_rect: FloatArray = field(repr=False)
-    """[N, 2], where each goes; NaN where it goes nowhere."""
-    jacobians: FloatArray = field(repr=False)
-    """[N, 2, 2], differences over one source pixel; NaN where the pixel is not in the frame that is shown."""
+    """[N, 2], where each scored pixel goes; NaN where it goes nowhere."""
+    shown: BoolArray = field(repr=False)
+    """[N], whether that is in the frame."""
+    delivered: Sheet = field(repr=False)
+    """The table that the user gets."""
+    pieces: Pieces = field(repr=False)
+    """Of that table; of a finer one where it is coarse."""
 
     @classmethod
-    def of(cls, warp: Warp, scored: ScoredPixels, size: tuple[int, int]) -> DeliveredSide:
-        """That of a warp into a frame of `size`."""
-        px_rect, jacobians = differences(warp, scored.pixels)
-        jacobians[~in_frame(px_rect, size)] = np.nan
-        return cls(scored, px_rect, jacobians)
-
-    @property
-    def shown(self) -> BoolArray:
-        """[N]"""
-        known: BoolArray = np.all(np.isfinite(self.jacobians), axis=(1, 2))
-        return known
+    def of(cls, rect: Rectification, side: Side, scored: ScoredPixels) -> DeliveredSide:
+        """That of one side."""
+        warp = rect.warp(side)
+        px_rect = warp.forward(scored.pixels)
+        delivered = Sheet(warp, rect.size, rect.maps(side))
+        return cls(scored, px_rect, in_frame(px_rect, rect.size), delivered, Pieces.of(delivered))
 
     @property
     def kept(self) -> int:
         """How many of the scored pixels, from the middle outwards, are shown before one is not."""
-        shown = self.shown
-        return len(shown) if shown.all() else int(shown.argmin())
+        return len(self.shown) if self.shown.all() else int(self.shown.argmin())
+
+    def shares(self, share: float) -> FloatArray:
+        """[M], what each piece holds of A_s, as shares of the view: in all s, where all of it is shown."""
+        scored = self.scored
+        view_px = len(scored.pixels) * math.prod(scored.cell_px)
+        return self.pieces.areas_within(scored.middle, scored.edge(share) * scored.reach) / view_px
+
+    @cached_property
+    def log_stretches(self) -> LogStretches:
+        """Of the pieces."""
+        return LogStretches.of(self.pieces.jacobians)
 
 
 @dataclass(frozen=True, eq=False)
 class Delivered:
-    """The maps of both images at the scored pixels of a rig's view.
+    """The maps of both images on a rig's view.
 
     >>> import rectbench as rb
     >>> rig = rb.load_rig("t265")
     >>> found = rb.Delivered.of(rb.rectify(rig, method="conventional"), rb.ScoredView.of(rig))
     >>> found.keeps(0.4), found.keeps(0.95)
     (True, False)
+    >>> round(found.log_distortion(0.4), 2), found.log_distortion(0.95)
+    (0.12, nan)
     """
 
     left: DeliveredSide
@@ -63,25 +74,22 @@ class Delivered:
     @classmethod
     def of(cls, rect: Rectification, view: ScoredView) -> Delivered:
         """What `rect` does on the view of its rig."""
-        return cls(
-            DeliveredSide.of(rect.left, view.left, rect.size),
-            DeliveredSide.of(rect.right, view.right, rect.size),
-        )
+        return cls(*(DeliveredSide.of(rect, side, view.side(side)) for side in SIDES))
 
     def side(self, side: Side) -> DeliveredSide:
         """The map of one image, by its name."""
         return self.left if side == "left" else self.right
 
-    @property
+    @cached_property
     def shown(self) -> Jacobians:
-        """The derivatives at all scored pixels, NaN where one is not shown."""
-        return Jacobians(self.left.jacobians, self.right.jacobians)
+        """The derivatives of all pieces that are shown of the view."""
+        return self.within(1.0)
 
     @property
     def kept_share(self) -> float:
         """The largest share s of the view such that all of A_s is shown, in both images."""
         sides = (self.left, self.right)
-        return min((side.kept / len(side.jacobians) for side in sides if len(side.jacobians)), default=0.0)
+        return min((side.kept / len(side.shown) for side in sides if len(side.shown)), default=0.0)
 
     def keeps(self, share: float) -> bool:
         """Whether all of A_s is shown, in both images."""
@@ -89,27 +97,23 @@ class Delivered:
         return all(0 < side.scored.count(share) <= side.kept for side in sides)
 
     def within(self, share: float) -> Jacobians:
-        """The derivatives on A_s."""
-        left, right = (side.jacobians[: side.scored.count(share)] for side in (self.left, self.right))
-        return Jacobians(left, right)
+        """The derivatives of what is shown of A_s, weighted by the shares of the view that pieces hold."""
+        J, weights = [], []
+        for side in (self.left, self.right):
+            shares = side.shares(share)
+            J.append(side.pieces.jacobians[shares > 0])
+            weights.append(shares[shares > 0])
+        return Jacobians(*J, *weights)
+
+    def log_distortion(self, share: float) -> float:
+        """That on A_s; NaN where the method does not show all of it."""
+        if not self.keeps(share):
+            return math.nan
+        sides = (self.left, self.right)
+        weights = np.concatenate([side.shares(share) for side in sides])
+        return LogStretches.joined([side.log_stretches for side in sides]).distortion(weights)[0]
 
     @property
     def shares_kept(self) -> tuple[float, ...]:
         """Those of `SHARES` that are kept."""
         return tuple(share for share in SHARES if self.keeps(share))
-
-
-def differences(warp: Warp, pixels: FloatArray, arm_px: float = ARM_PX) -> tuple[FloatArray, FloatArray]:
-    """Where pixels [N, 2] go, [N, 2], and the derivative there by differences over two arms, [N, 2, 2].
-
-    What counts is the map that users get, whatever it says of its own derivative. At the end of a map's
-    domain the difference is over the one arm that there is.
-    """
-    middle, *arms = np.moveaxis(warp.forward(pixels[:, None] + arm_px * CROSS), 1, 0)
-    columns = []
-    for ends in (arms[:2], arms[2:]):
-        known = [np.isfinite(arm) for arm in ends]
-        first, last = (np.where(there, arm, middle) for there, arm in zip(known, ends, strict=True))
-        with np.errstate(invalid="ignore", divide="ignore"):
-            columns.append((last - first) / (arm_px * (known[0].astype(float) + known[1])))
-    return middle, np.stack(columns, axis=-1)

@@ -28,11 +28,9 @@ MIDDLE_PIXELS = 2_000
 """Source pixels an image by which the middle of the view is found."""
 SHARES = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.75, 0.8, 0.9, 0.95, 1.0)
 """The shares of the view that rows tell of."""
-ARM_PX = 0.5
-"""A derivative is a difference over twice this, one pixel; a scored pixel has its four arms in the view."""
+LEAST_REACH_PX = 0.5
 ROW_POINTS = 513
 """Along the middle row of the view."""
-ARMS = ARM_PX * np.array([[-1.0, 0.0], [1.0, 0.0], [0.0, -1.0], [0.0, 1.0]])
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,13 +58,13 @@ class ScoredPixels:
         """About `count` pixels of the camera's image; `ray` [3] is the middle of the view in its frame."""
         rng = np.random.default_rng(derived_seed("scored pixels", repr(camera)))
         cell_px, corners = _grid(camera, count)
-        # To pixel centres at the image's edge: further out a pixel has no neighbour to take a difference to.
+        # To pixel centres at the image's edge, as far as its rows and columns reach.
         pixels = np.clip(_jittered(corners, cell_px, rng), 0, np.array(camera.size) - 1)
-        pixels = pixels[_seen_with_arms(camera, pixels)]
+        pixels = pixels[camera.unproject(pixels)[1]]
         middle, seen = camera.project(ray)
         if not seen:  # cameras that look apart have no common middle
             middle = (np.array(camera.size) - 1) / 2
-        reach = np.abs(pixels - middle).max(axis=0, initial=ARM_PX)
+        reach = np.abs(pixels - middle).max(axis=0, initial=LEAST_REACH_PX)
         distance = _distance(pixels, middle, reach)
         order = np.argsort(distance, kind="stable")
         return cls(camera, middle, reach, pixels[order], distance[order], cell_px)
@@ -191,13 +189,6 @@ def _cells(camera: Camera, count: float) -> tuple[tuple[float, float], FloatArra
 def _jittered(corners: FloatArray, cell_px: tuple[float, float], rng: np.random.Generator) -> FloatArray:
     places: FloatArray = corners + rng.random(corners.shape) * np.array(cell_px)
     return places
-
-
-def _seen_with_arms(camera: Camera, pixels: FloatArray) -> BoolArray:
-    """Mask of the pixels whose arms the lens sees, on the image."""
-    arms = pixels[:, None] + ARMS
-    seen: BoolArray = np.all(camera.unproject(arms)[1] & camera.contains(arms), axis=-1)
-    return seen
 
 
 def _distance(pixels: FloatArray, middle: FloatArray, reach: FloatArray) -> FloatArray:

@@ -3,24 +3,30 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rectbench.types import FloatArray
+from rectbench.types import BoolArray, FloatArray
 from rectbench.warps import Rectification, evaluation_pixels
 
 
 @dataclass(frozen=True, eq=False)
 class Jacobians:
-    """d(rectified)/d(source) at pixels of both images; NaN where a method keeps no pixel."""
+    """d(rectified)/d(source) at places of both images; NaN where a method keeps no pixel."""
 
     left: FloatArray
     """[N, 2, 2], columns w1 = d/du and w2 = d/dv."""
     right: FloatArray
     """[M, 2, 2]"""
+    left_weights: FloatArray | None = None
+    """[N], of the places; all count alike where it is left out."""
+    right_weights: FloatArray | None = None
+    """[M]"""
 
     @classmethod
     def at(cls, rect: Rectification, pixels: ArrayLike | None = None) -> Jacobians:
@@ -32,16 +38,28 @@ class Jacobians:
         )
         return cls(left.reshape(-1, 2, 2), right.reshape(-1, 2, 2))
 
-    @property
+    @cached_property
+    def exist(self) -> BoolArray:
+        """Which of the left ones, then of the right ones, exist: [N + M]."""
+        exists: BoolArray = np.isfinite(np.concatenate([self.left, self.right])).all(axis=(1, 2))
+        return exists
+
+    @cached_property
     def both(self) -> FloatArray:
         """Left then right, those that exist: [K, 2, 2]."""
-        stacked = np.concatenate([self.left, self.right])
-        mapped: FloatArray = stacked[np.isfinite(stacked).all(axis=(1, 2))]
+        mapped: FloatArray = np.concatenate([self.left, self.right])[self.exist]
         return mapped
+
+    @cached_property
+    def weights(self) -> FloatArray:
+        """Those of `both` [K]; their mean is 1."""
+        sides = (self.left, self.left_weights), (self.right, self.right_weights)
+        stacked = np.concatenate([np.ones(len(J)) if w is None else w for J, w in sides])[self.exist]
+        return stacked / stacked.mean() if stacked.size else stacked
 
     @property
     def valid_share(self) -> float:
-        """Share of the pixels that the rectification maps at all."""
+        """Share of the places that the rectification maps at all."""
         return len(self.both) / max(1, len(self.left) + len(self.right))
 
 
@@ -64,19 +82,46 @@ def singular_values(a: Any, b: Any, c: Any, d: Any, xp: Any) -> tuple[Any, Any]:
     return p + q, xp.abs(p - q)
 
 
-def log_distortion_parts(J: FloatArray) -> tuple[float, float, float]:
-    """RMS of log σ1 and log σ2 of Jacobians [N, 2, 2] about their common mean; its parts area and anisotropy.
+@dataclass(frozen=True, eq=False)
+class LogStretches:
+    """Logarithms of the singular values σ1 ≥ σ2 of Jacobians: their mean, and half of their difference."""
 
-    The square of the first is the sum of the squares of the others: what changes in size from place to place,
-    and what is squeezed. NaN without Jacobians, and where one is singular.
-    """
-    large, small = singular_values(*entries(J), np)
-    if not large.size or not (small > 0).all():
-        return math.nan, math.nan, math.nan
-    size = (np.log(large) + np.log(small)) / 2
-    squeeze = (np.log(large) - np.log(small)) / 2
-    area, anisotropy = float(np.std(size)), float(np.sqrt(np.square(squeeze).mean()))
-    return math.hypot(area, anisotropy), area, anisotropy
+    size: FloatArray
+    """[N], (log σ1 + log σ2) / 2."""
+    squeeze: FloatArray
+    """[N], (log σ1 - log σ2) / 2."""
+
+    @classmethod
+    def of(cls, J: FloatArray) -> LogStretches:
+        """Those of Jacobians [N, 2, 2]; infinite where one is singular."""
+        large, small = singular_values(*entries(J), np)
+        with np.errstate(divide="ignore"):
+            large, small = np.log(large), np.log(small)
+        return cls((large + small) / 2, (large - small) / 2)
+
+    @classmethod
+    def joined(cls, parts: Sequence[LogStretches]) -> LogStretches:
+        """One after another."""
+        return cls(np.concatenate([p.size for p in parts]), np.concatenate([p.squeeze for p in parts]))
+
+    def distortion(self, weights: FloatArray | None = None) -> tuple[float, float, float]:
+        """RMS of log σ1 and log σ2 about their common mean; its parts area and anisotropy.
+
+        The square of the first is the sum of the squares of the others: what changes in size from place to
+        place, and what is squeezed. Places of weight 0 do not count. NaN without any, and where a Jacobian
+        is singular.
+        """
+        size, squeeze = self.size, self.squeeze
+        weights = np.ones(len(size)) if weights is None else weights
+        if not weights.all():
+            counts = weights > 0
+            size, squeeze, weights = size[counts], squeeze[counts], weights[counts]
+        if not (size.size and np.isfinite(size).all()):
+            return math.nan, math.nan, math.nan
+        weights = weights / weights.sum()
+        area = math.sqrt(weights @ np.square(size - weights @ size))
+        anisotropy = math.sqrt(weights @ np.square(squeeze))
+        return math.hypot(area, anisotropy), area, anisotropy
 
 
 def entries(J: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:

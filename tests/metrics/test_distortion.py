@@ -76,7 +76,7 @@ def test_l_is_the_papers_sum_over_pixels_and_its_terms_add_up() -> None:
     assert sum(score.terms.values()) == pytest.approx(float(score), rel=1e-12)
     per_pixel = np.concatenate([score.per_pixel["left"], score.per_pixel["right"]])
     assert per_pixel.mean() == pytest.approx(float(score), rel=1e-12)
-    assert score.median == np.median(per_pixel)
+    assert score.median == np.quantile(per_pixel, 0.5, method="inverted_cdf")
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -155,16 +155,16 @@ def test_sampling_counts_lost_and_invented_pixels() -> None:
 def test_an_unchanged_image_loses_and_invents_nothing() -> None:
     shown = delivered(scaled_pinhole(left=(1, 1), right=(1, 1)))
     assert sampling(shown) == {"sampling_lost": 0.0, "sampling_invented": 0.0}
-    assert float(distortion_of(shown)) == pytest.approx(0, abs=1e-20)
+    assert float(distortion_of(shown)) == pytest.approx(0, abs=1e-9)  # of float32 entries
 
 
-def test_distortion_at_the_scored_pixels_is_that_of_every_pixel() -> None:
+def test_distortion_of_what_is_shown_is_that_of_every_pixel() -> None:
     pair = rig("unified", size=(200, 140))
     rect = rb.rectify(pair)
     everywhere = pair.left.pixel_grid().reshape(-1, 2)
     expected = rb.metrics.distortion(rect, pair, pixels=everywhere)
     shown = Delivered.of(rect, ScoredView.of(pair)).shown
-    assert distortion_of(shown) == pytest.approx(float(expected), rel=0.005)
+    assert distortion_of(shown) == pytest.approx(float(expected), rel=0.02)
 
 
 def test_pixels_that_are_not_mapped_are_left_out_and_counted() -> None:

@@ -32,10 +32,9 @@ class ViewAtSourceSize(Metric):
         """The mean over both images of what the best window keeps."""
         sides = (case.delivered.left, case.delivered.right)
         middle = case.delivered.within(CENTRE_SHARE)
-        areas = np.abs(np.linalg.det(np.concatenate([middle.left, middle.right])))
-        if not np.isfinite(areas).any():  # it does not show the middle of the view
+        if not len(middle.both):  # it does not show the middle of the view
             return {"view_at_source_size": 0.0}
-        scale = 1 / np.sqrt(np.nanmedian(areas))
+        scale = 1 / np.sqrt(np.median(np.abs(np.linalg.det(middle.both))))
         shown = [np.where(side.shown[:, None], scale * side.px_rect, np.nan) for side in sides]
         return {"view_at_source_size": share_in_window(shown, source_size(case.rect))}
 

@@ -1,0 +1,27 @@
+"""The derivative of a map by differences of the map itself, whatever it says of its derivative."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rectbench.types import FloatArray
+from rectbench.warps.warp import Warp
+
+ARM_PX = 0.5
+"""A derivative is a difference over twice this, one pixel."""
+CROSS = np.array([[0.0, 0.0], [-1.0, 0.0], [1.0, 0.0], [0.0, -1.0], [0.0, 1.0]])
+
+
+def differences(warp: Warp, pixels: FloatArray, arm_px: float = ARM_PX) -> tuple[FloatArray, FloatArray]:
+    """Where pixels [N, 2] go, [N, 2], and the derivative there by differences over two arms, [N, 2, 2].
+
+    At the end of a map's domain the difference is over the one arm that there is.
+    """
+    middle, *arms = np.moveaxis(warp.forward(pixels[:, None] + arm_px * CROSS), 1, 0)
+    columns = []
+    for ends in (arms[:2], arms[2:]):
+        known = [np.isfinite(arm) for arm in ends]
+        first, last = (np.where(there, arm, middle) for there, arm in zip(known, ends, strict=True))
+        with np.errstate(invalid="ignore", divide="ignore"):
+            columns.append((last - first) / (arm_px * (known[0].astype(float) + known[1])))
+    return middle, np.stack(columns, axis=-1)

@@ -1,0 +1,205 @@
+"""The source image as a lookup table takes it apart: the pieces between its entries.
+
+A distortion is an integral over the source. The entries of a table, some pixels apart, are the corners of
+quads that tile what it shows; each quad has a source area and a mean derivative. All that a table does
+between its entries adds up to these: bending it to have less distortion here makes more of it beside.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rectbench.types import BoolArray, FloatArray
+from rectbench.warps.lookup.tables import OUTSIDE, FloatMap, lookup_table
+from rectbench.warps.rectification import LARGEST_SIDE_PX
+from rectbench.warps.targets import Framed
+from rectbench.warps.warp import Warp
+
+PIECES = 20_000
+"""In a frame, about; the distortion of a lens hardly changes over one of them."""
+FEWEST_PIECES = 10_000
+"""In the source image; where a table has fewer, a finer one of the same map is looked at."""
+LARGEST_TABLE = 2_000_000
+"""Entries of a table that is made for this alone."""
+ROUNDING_PX = 0.1
+
+Table = tuple[FloatMap, FloatMap]
+
+
+@dataclass(frozen=True, eq=False)
+class Sheet:
+    """A warp at one size, as a table: the one that is delivered, or a finer one of the same map."""
+
+    warp: Warp
+    size: tuple[int, int]
+    table: Table = field(repr=False)
+    scale: tuple[float, float] = (1.0, 1.0)
+    """Its width and height against the delivered one's."""
+
+    def finer(self, scale: float) -> Sheet:
+        """The same image `scale` times as large, as far as that is feasible."""
+        scale = min(scale, math.sqrt(LARGEST_TABLE / math.prod(self.size)))
+        width, height = (min(LARGEST_SIDE_PX, max(side, round(scale * side))) for side in self.size)
+        scales = width / self.size[0], height / self.size[1]
+        # The harness's own frame: a target may make anything of `framed`.
+        warp = replace(self.warp, target=Framed(self.warp.target, -0.5, -0.5, *scales))
+        return Sheet(warp, (width, height), lookup_table(warp, (width, height)), scales)
+
+
+@dataclass(frozen=True, eq=False)
+class Pieces:
+    """The quads between entries of a table, those that show something of the source image."""
+
+    sheet: Sheet
+    columns: NDArray[np.intp] = field(repr=False)
+    """[C], of the entries that are corners."""
+    rows: NDArray[np.intp] = field(repr=False)
+    """[R]"""
+    numbers: NDArray[np.intp] = field(repr=False)
+    """[R - 1, C - 1], which piece each quad of the frame is; -1 where it shows nothing."""
+    middles: FloatArray = field(repr=False)
+    """[2, M], source pixels."""
+    halves: FloatArray = field(repr=False)
+    """[2, M], half of their widths and of their heights in the source."""
+    areas_px: FloatArray = field(repr=False)
+    """[M], in the source; below 0 where the table is mirrored or folded."""
+    jacobians: FloatArray = field(repr=False)
+    """[M, 2, 2], d(rectified)/d(source), the mean over the piece, in the frame that is delivered."""
+
+    @classmethod
+    def of(cls, delivered: Sheet) -> Pieces:
+        """Those of a table, or of a finer one: at least some `FEWEST_PIECES` where anything is shown."""
+        entries, count = math.prod(delivered.size), PIECES
+        found = cls.between(delivered, count)
+        if found.are_few and count < entries:
+            count = min(entries, 2 * count * FEWEST_PIECES // len(found.areas_px))
+            found = cls.between(delivered, count)
+        if found.are_few:
+            finer = delivered.finer(math.sqrt(2 * FEWEST_PIECES / len(found.areas_px)))
+            found = cls.between(finer, math.prod(finer.size))
+        return found
+
+    @classmethod
+    def between(cls, sheet: Sheet, count: int) -> Pieces:
+        """About `count` pieces of a frame, those of them that show the source."""
+        spacing = math.sqrt(math.prod(sheet.size) / count)
+        columns, rows = (_spread(side, spacing) for side in sheet.size)
+        corners, is_known = _corners(sheet.table, columns, rows)
+        across, down = np.diff(corners, axis=2), np.diff(corners, axis=1)
+        across, down = (across[:, 1:] + across[:, :-1]) / 2, (down[:, :, 1:] + down[:, :, :-1]) / 2
+        middles = (corners[:, 1:, 1:] + corners[:, :-1, 1:] + corners[:, 1:, :-1] + corners[:, :-1, :-1]) / 4
+        halves = (np.abs(across) + np.abs(down)) / 2
+        camera = sheet.warp.source
+        centre, half_image = (np.array(camera.size) - 1) / 2, np.array(camera.size) / 2
+        with np.errstate(invalid="ignore"):
+            off = np.abs(middles - centre[:, None, None]) - half_image[:, None, None]
+            chosen = np.flatnonzero((off < halves).all(axis=0))
+        whole = is_known[1:, 1:] & is_known[:-1, 1:] & is_known[1:, :-1] & is_known[:-1, :-1]
+        guessed = np.flatnonzero(~whole.ravel()[chosen])
+        seen = np.ones(len(chosen), dtype=bool)
+        seen[guessed] = camera.unproject(middles.reshape(2, -1)[:, chosen[guessed]].T)[1]
+        chosen = chosen[seen]
+        across, down, middles, halves = (
+            plane.reshape(2, -1)[:, chosen] for plane in (across, down, middles, halves)
+        )
+        steps = np.stack(np.meshgrid(np.diff(columns) / sheet.scale[0], np.diff(rows) / sheet.scale[1]))
+        steps = steps.reshape(2, -1)[:, chosen]
+        areas = across[0] * down[1] - across[1] * down[0]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            J = np.array([[down[1], -down[0]], [-across[1], across[0]]]) / areas * steps[:, None]
+        numbers = np.full(whole.shape, -1)
+        numbers.ravel()[chosen] = np.arange(len(chosen))
+        J = np.ascontiguousarray(np.moveaxis(J, 2, 0))
+        return cls(sheet, columns, rows, numbers, middles, halves, areas, J)
+
+    @property
+    def are_few(self) -> bool:
+        """Whether there are some, and too few to tell how the map changes from one to the next."""
+        return 0 < len(self.areas_px) < FEWEST_PIECES
+
+    def at(self, px_rect: FloatArray) -> NDArray[np.intp]:
+        """The pieces [K] at pixels [K, 2] of the sheet; -1 where there is none."""
+        column = np.searchsorted(self.columns, px_rect[:, 0], side="right") - 1
+        row = np.searchsorted(self.rows, px_rect[:, 1], side="right") - 1
+        down, across = self.numbers.shape
+        found: NDArray[np.intp] = self.numbers[np.clip(row, 0, down - 1), np.clip(column, 0, across - 1)]
+        return found
+
+    def hold(self, pixels: FloatArray, px_rect: FloatArray) -> BoolArray:
+        """Mask [K] of the source pixels [K, 2] in the pieces at pixels [K, 2] of the delivered frame.
+
+        Pieces are taken by their extents, half as large again: they need not stand straight.
+        """
+        if not len(self.areas_px):
+            return np.zeros(len(pixels), dtype=bool)
+        piece = self.at((px_rect + 0.5) * self.sheet.scale - 0.5)
+        off = np.abs(pixels.T - self.middles[:, piece])
+        held: BoolArray = (piece >= 0) & (off <= 1.5 * self.halves[:, piece] + ROUNDING_PX).all(axis=0)
+        return held
+
+    def areas_within(self, middle: FloatArray, reach: FloatArray) -> FloatArray:
+        """[M], source pixels² of each piece in the image and within `reach` [2] of `middle` [2]."""
+        camera_middle = (np.array(self.sheet.warp.source.size) - 1) / 2
+        camera_reach = np.array(self.sheet.warp.source.size) / 2
+        low = np.maximum(middle - reach, camera_middle - camera_reach)
+        high = np.minimum(middle + reach, camera_middle + camera_reach)
+        starts = np.maximum(self.middles - self.halves, low[:, None])
+        ends = np.minimum(self.middles + self.halves, high[:, None])
+        shares = np.maximum(0.0, ends - starts) / (2 * self.halves)
+        areas: FloatArray = self.areas_px * shares[0] * shares[1]
+        return areas
+
+
+def _spread(side: int, spacing: float) -> NDArray[np.intp]:
+    """Whole numbers from the first to the last of a side, about so far apart."""
+    steps = max(1, min(side - 1, round((side - 1) / spacing)))
+    return np.rint(np.linspace(0, max(side - 1, 1), steps + 1)).astype(np.intp)
+
+
+def _corners(table: Table, columns: NDArray[np.intp], rows: NDArray[np.intp]) -> tuple[FloatArray, BoolArray]:
+    """Entries of a table at rows and columns, [2, R, C], and whether they are there, [R, C].
+
+    Beside those that are there, one beyond them is guessed: pieces at the rim of what a lens sees count too.
+    """
+    corners = np.stack([layer[np.ix_(rows, columns)] for layer in table]).astype(float)
+    is_known: BoolArray = np.any(corners > OUTSIDE, axis=0)
+    if is_known.all():
+        return corners, is_known
+    corners[:, ~is_known] = np.nan
+    row, column = np.nonzero(~is_known)
+    guesses = [
+        _extended(corners, (row, column), places, along, step)
+        for along, places in enumerate((rows, columns))
+        for step in (-1, 1)
+    ]
+    there = np.isfinite(guesses)
+    with np.errstate(invalid="ignore"):
+        corners[:, row, column] = np.where(there, guesses, 0).sum(axis=0) / there.sum(axis=0)
+    return corners, is_known
+
+
+def _extended(
+    corners: FloatArray,
+    wanted: tuple[NDArray[np.intp], NDArray[np.intp]],
+    places: NDArray[np.intp],
+    along: int,
+    step: int,
+) -> FloatArray:
+    """Corners [2, K] wanted at (rows, columns), by the straight line through the next two.
+
+    Those follow after a step and two steps along rows (0) or columns (1), which stand at `places` of the
+    table.
+    """
+    at = wanted[along]
+    near, far = (np.clip(at + steps, 0, len(places) - 1) for steps in (step, 2 * step))
+    first, second = (
+        corners[:, index, wanted[1]] if along == 0 else corners[:, wanted[0], index] for index in (near, far)
+    )
+    with np.errstate(divide="ignore", invalid="ignore"):
+        reach = (places[at] - places[near]) / (places[near] - places[far])  # infinite at the table's end
+        extended: FloatArray = first + reach * (first - second)
+    return extended
