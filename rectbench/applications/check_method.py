@@ -13,14 +13,14 @@ from rectbench.calibrations import load_rig
 from rectbench.errors import InvalidResult, Unsupported
 from rectbench.experiments.execution.outcomes import outcome_of
 from rectbench.metrics import row_error
+from rectbench.metrics.row_misfit import simulated_matches
 from rectbench.pairs.rendering import placed
 from rectbench.plugins.fitting import checked_options, fit
 from rectbench.plugins.rectifier import Problem, Rectifier, pose_problem
 from rectbench.registry import Plugin
-from rectbench.rigs import Rig
 from rectbench.scored import Delivered, ScoredView, check_agreement
 from rectbench.scored.agreement import PLACES
-from rectbench.types import FloatArray, Matches
+from rectbench.types import FloatArray
 from rectbench.warps import Rectification, Warp
 
 RIGS = ("perspective-toed-in", "bumblebee2", "t265", "sony-as200v", "mynteye")
@@ -32,6 +32,8 @@ DERIVATIVE_ERROR = 1e-5
 """Relative; what central differences of float64 leave over."""
 ROW_ERROR_PX = 1e-6
 STEP_PX = 1e-3
+MATCHES, DISTANCES = 3000, (3.0, 1000.0)
+"""Points all over the view, none that a method was given; how far away, in baselines."""
 SCORED_SHARE = 0.05
 """A method maps at least this share of the evaluation pixels."""
 
@@ -153,7 +155,7 @@ def _orientation(plugin: Plugin[Rectifier], problem: Problem, rect: Rectificatio
 
 
 def _rows(plugin: Plugin[Rectifier], problem: Problem, rect: Rectification) -> tuple[bool, str]:
-    errors = row_error(rect, *_unseen_matches(problem.rig)).rectified_px
+    errors = row_error(rect, *simulated_matches(problem.rig, MATCHES, *DISTANCES)).rectified_px
     errors = errors[np.isfinite(errors)]
     if not errors.size:
         return False, "no correspondence is mapped in both images"
@@ -161,17 +163,6 @@ def _rows(plugin: Plugin[Rectifier], problem: Problem, rect: Rectification) -> t
     if "pose" not in plugin.value.needs:
         return True, f"{worst:.1e} px; the method does not know the pose"
     return worst <= ROW_ERROR_PX, f"{worst:.1e} px with the exact pose"
-
-
-def _unseen_matches(rig: Rig, count: int = 3000) -> Matches:
-    """Where random points all over the view are seen: none that a method was given."""
-    rng = np.random.default_rng(1)
-    pixels = rng.uniform(0, np.array(rig.left.size) - 1, (count, 2))
-    rays, ok_left = rig.left.unproject(pixels)
-    distances = rig.baseline_m * np.exp(rng.uniform(np.log(3), np.log(1000), count))
-    pixels_right, ok_right = rig.right.project(rig.right_from_left(rays * distances[:, None]))
-    seen = ok_left & ok_right & rig.right.contains(pixels_right)
-    return Matches(pixels[seen], pixels_right[seen])
 
 
 def _agreement(plugin: Plugin[Rectifier], problem: Problem, rect: Rectification) -> tuple[bool, str]:

@@ -16,7 +16,7 @@ import pandas as pd
 
 from rectbench.errors import InvalidInput, Unsupported
 from rectbench.experiments.execution.outcomes import outcome_of
-from rectbench.metrics import frame_costs, row_error
+from rectbench.metrics import frame_costs, row_error, row_misfit
 from rectbench.plugins.fitting import checked_options, fit
 from rectbench.plugins.rectifier import METHODS, Problem, Rectifier, pose_problem
 from rectbench.registry import Plugin, registry
@@ -159,16 +159,19 @@ def _tried(
         return Candidate(plugin.name, status="unsupported", reason="works from images, and there are none")
     try:
         own = fit(plugin, problem, checked_options(plugin, {}))
-        check_agreement(own, Delivered.of(own, view))
+        delivered = Delivered.of(own, view)
+        check_agreement(own, delivered)
+        rows = row_misfit(own, delivered, problem.rig)
         rect = framed(own, framing)
-        measured = {**frame_costs(rect, problem.rig), RANKING: log_distortion_where(own, view, framing)}
+        measured = frame_costs(rect, problem.rig)
+        measured[RANKING] = log_distortion_where(own, view, framing) if rows.rectifies else math.nan
         if trusted is not None:
             measured[ROWS] = row_error(rect, *trusted).columns()[ROWS]
     except Exception as error:  # a plugin may raise anything, and the others are still to be tried
         outcome = outcome_of(error)
         return Candidate(plugin.name, status=outcome.status, reason=outcome.reason)
-    reason = "" if math.isfinite(measured[RANKING]) else f"does not map all of {_shown(framing)}"
-    return Candidate(plugin.name, rect, measured, reason=reason)
+    lacks = "" if math.isfinite(measured[RANKING]) else f"does not map all of {_shown(framing)}"
+    return Candidate(plugin.name, rect, measured, reason=rows.reason or lacks)
 
 
 def log_distortion_where(rect: Rectification, view: ScoredView, framing: Framing) -> float:

@@ -25,6 +25,8 @@ from rectbench.metrics.row_error import RowError as RowError
 from rectbench.metrics.row_error import row_error as row_error
 from rectbench.metrics.row_error_board import BoardRowError as BoardRowError
 from rectbench.metrics.row_error_features import FeatureRowError as FeatureRowError
+from rectbench.metrics.row_misfit import RowMisfit as RowMisfit
+from rectbench.metrics.row_misfit import row_misfit as row_misfit
 from rectbench.metrics.sampling import sampling as sampling
 from rectbench.metrics.timing import Timing as Timing
 from rectbench.metrics.view import View as View

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -10,6 +11,8 @@ from rectbench.plugins.metric import Case, Column, Metric, Tolerance
 from rectbench.rigs import Rig
 from rectbench.scored import SeenPixels, SeenView
 from rectbench.warps import Rectification, Warp
+from rectbench.warps.lookup.resampling import SIDES, Side
+from rectbench.warps.lookup.tables import Table, reads_source
 from rectbench.warps.rectification import in_frame
 
 
@@ -25,14 +28,14 @@ def coverage(rect: Rectification, rig: Rig) -> dict[str, float]:
     >>> 0 < kept["coverage_overlap"] <= 1
     True
     """
-    return coverage_of(rect, SeenView.of(rig))
+    return coverage_of(rect, SeenView.of(rig), {side: rect.maps(side) for side in SIDES})
 
 
-def coverage_of(rect: Rectification, seen: SeenView) -> dict[str, float]:
-    """The same, with what the rig's lenses see."""
+def coverage_of(rect: Rectification, seen: SeenView, tables: Mapping[Side, Table]) -> dict[str, float]:
+    """The same, with what the rig's lenses see, and the rectification's lookup tables."""
     sides = ((rect.left, seen.left), (rect.right, seen.right))
     pixels, solid_angle, overlap = np.mean([_kept_shares(*side, rect.size) for side in sides], axis=0)
-    valid = [rect.valid("left").mean(), rect.valid("right").mean()]
+    valid = [reads_source(*tables[side], rect.warp(side).source.size).mean() for side in SIDES]
     source_pixels = np.mean([math.prod(warp.source.size) for warp in (rect.left, rect.right)])
     return {
         "coverage_pixels": float(pixels),
@@ -101,4 +104,5 @@ class Coverage(Metric):
 
     def compute(self, case: Case) -> dict[str, float]:
         """Means of both images."""
-        return coverage_of(case.rect, case.pair.seen_view)
+        tables = {side: case.delivered.side(side).delivered.table for side in SIDES}
+        return coverage_of(case.rect, case.pair.seen_view, tables)

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import math
+
 from rectbench.metrics.distortion import distortion_column
+from rectbench.metrics.row_misfit import case_row_misfit, row_misfit
 from rectbench.plugins.metric import Case, Column, Metric, Tolerance
 from rectbench.rigs import Rig
 from rectbench.scored import SHARES, Delivered, ScoredView
@@ -33,8 +36,8 @@ def log_distortion(jacobians: Jacobians) -> dict[str, float]:
 def log_distortion_on_view(rect: Rectification, rig: Rig, share: float = RANKING_SHARE) -> float:
     """Log distortion on A_s, the `share` of the view nearest to its middle: what methods are ranked by.
 
-    By differences of the map over one pixel, at about 10,000 pixels an image, the same for every
-    rectification of the rig. NaN where it does not show all of A_s.
+    By the lookup tables, as they are delivered. NaN where the rectification does not show all of A_s, and
+    where its rows are no epipolar planes of the rig, see `row_misfit`.
 
     >>> import rectbench as rb
     >>> rig = rb.load_rig("t265")
@@ -43,7 +46,8 @@ def log_distortion_on_view(rect: Rectification, rig: Rig, share: float = RANKING
     >>> log_distortion_on_view(rb.rectify(rig, method="conventional"), rig)
     nan
     """
-    return Delivered.of(rect, ScoredView.of(rig)).log_distortion(share)
+    delivered = Delivered.of(rect, ScoredView.of(rig))
+    return delivered.log_distortion(share) if row_misfit(rect, delivered, rig).rectifies else math.nan
 
 
 def share_key(share: float) -> str:
@@ -61,9 +65,8 @@ def _share_column(share: float) -> Column:
         share_key(share),
         f"log distortion, {100 * share:.0f} %",
         f"Log distortion on the {100 * share:.0f} % of the source pixels nearest to the middle of what both "
-        "images see, the same for all methods; empty where a method does not show them all."
-        + ranks
-        * " Methods are ranked by it.",
+        "images see, the same for all methods; empty where a method does not show them all, or does not "
+        "rectify." + ranks * " Methods are ranked by it.",
         tolerance=Tolerance(0.01, 1e-6) if share in SHOWN_SHARES else None,
         shown="summary" if share in SHOWN_SHARES else "rows",
         ranks=ranks,
@@ -95,7 +98,8 @@ class LogDistortion(Metric):
     )
 
     def compute(self, case: Case) -> dict[str, float]:
-        """Of both images together, by the harness's own derivative of the map."""
+        """Of both images together, by their lookup tables."""
         delivered = case.delivered
-        on_shares = {share_key(share): delivered.log_distortion(share) for share in delivered.shares_kept}
+        shares = delivered.shares_kept if case.once(case_row_misfit).rectifies else ()
+        on_shares = {share_key(share): delivered.log_distortion(share) for share in shares}
         return on_shares | log_distortion(delivered.shown)

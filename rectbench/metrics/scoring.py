@@ -22,6 +22,7 @@ BUNDLES: Mapping[str, tuple[str, ...]] = {
         "coverage",
         "sampling",
         "order",
+        "row_misfit",
     ),
 }
 """Names that stand for several metrics. `geometry`: all that needs neither image nor match."""

@@ -212,6 +212,8 @@ class Case:
     rect: Rectification
     """What the method made of the rig that it believed in."""
     pair: Known
+    believed: Rig | None = None
+    """The rig that the method was told, where that is not the true one."""
     pose_is_estimated: bool = False
     """Whether the method was told the pose that the images tell."""
     fit: Callable[[], Rectification] | None = None

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rectbench.types import BoolArray, FloatArray
-from rectbench.warps.lookup.tables import OUTSIDE, FloatMap, lookup_table
+from rectbench.warps.lookup.tables import OUTSIDE, Table, lookup_table
 from rectbench.warps.rectification import LARGEST_SIDE_PX
 from rectbench.warps.targets import Framed
 from rectbench.warps.warp import Warp
@@ -26,8 +26,6 @@ FEWEST_PIECES = 10_000
 LARGEST_TABLE = 2_000_000
 """Entries of a table that is made for this alone."""
 ROUNDING_PX = 0.1
-
-Table = tuple[FloatMap, FloatMap]
 
 
 @dataclass(frozen=True, eq=False)

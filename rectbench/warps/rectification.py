@@ -16,7 +16,7 @@ from rectbench.rigs import Rig
 from rectbench.types import FloatArray
 from rectbench.warps.frame import rectifying_rotations, signed_baseline_m
 from rectbench.warps.lookup.resampling import Filter, Resampler, Side
-from rectbench.warps.lookup.tables import FloatMap, lookup_table, reads_source
+from rectbench.warps.lookup.tables import Table, lookup_table, reads_source
 from rectbench.warps.profiles import Profile
 from rectbench.warps.targets import Epipolar, Target
 from rectbench.warps.view.extent import Range, ViewAngles, view_angles
@@ -154,7 +154,7 @@ class Rectification:
         left, right = (replace(warp, target=warp.target.framed(*frame)) for warp in (self.left, self.right))
         return replace(self, left=left, right=right, size=size)
 
-    def maps(self, side: Side) -> tuple[FloatMap, FloatMap]:
+    def maps(self, side: Side) -> Table:
         """(map_x, map_y) [height, width] float32 for `cv2.remap`.
 
         Source pixels; those beyond the source image, or -16 where the lens sees nothing, read the

@@ -140,7 +140,12 @@ def _measured(task: CellTask, pair: Pair) -> Outcome:
     rectification, first_fit_s = timed(fit)
     check_result(method.name, rectification, problem)
     case = Case(
-        rectification, pair, pose_is_estimated=task.cell.pose == ESTIMATED, fit=fit, first_fit_s=first_fit_s
+        rectification,
+        pair,
+        believed=problem.rig,
+        pose_is_estimated=task.cell.pose == ESTIMATED,
+        fit=fit,
+        first_fit_s=first_fit_s,
     )
     check_agreement(rectification, case.delivered)
     columns = score(case, task.metrics)

@@ -24,9 +24,11 @@ NaN, which bilinear `remap` of float images would hand on.
 """
 
 FloatMap = NDArray[np.float32]
+Table = tuple[FloatMap, FloatMap]
+"""(map_x, map_y) [height, width] float32, source pixels."""
 
 
-def lookup_table(warp: Warp, size: tuple[int, int]) -> tuple[FloatMap, FloatMap]:
+def lookup_table(warp: Warp, size: tuple[int, int]) -> Table:
     """(map_x, map_y) [height, width] float32, source pixels, for a rectified image of `size`."""
     columns, rows = warp.target.axis_tables(np.arange(size[0], dtype=float), np.arange(size[1], dtype=float))
     fill = _fill_compiled if llvm.available() else _fill_with_numpy
@@ -46,7 +48,7 @@ def _source_pixel(warp: Warp, c: Any, column: Any, row: Any, xp: Formulas) -> tu
     return xp.where(known, u, OUTSIDE), xp.where(known, v, OUTSIDE)
 
 
-def _fill_with_numpy(warp: Warp, columns: Axis, rows: Axis) -> tuple[FloatMap, FloatMap]:
+def _fill_with_numpy(warp: Warp, columns: Axis, rows: Axis) -> Table:
     c: SimpleNamespace = namespaced(warp.constants)
     along = tuple(values[None, :] for values in columns)
     with np.errstate(all="ignore"):
@@ -56,7 +58,7 @@ def _fill_with_numpy(warp: Warp, columns: Axis, rows: Axis) -> tuple[FloatMap, F
     return map_x, map_y
 
 
-def _fill_compiled(warp: Warp, columns: Axis, rows: Axis) -> tuple[FloatMap, FloatMap]:
+def _fill_compiled(warp: Warp, columns: Axis, rows: Axis) -> Table:
     xp = drjit_namespace()
     import drjit as dr
     from drjit.llvm import Float, Float64, UInt32
