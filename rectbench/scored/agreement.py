@@ -189,7 +189,8 @@ def _check_distortion(places: _Places, pieces: Pieces) -> None:
     places.require(unfolded, "the lookup table is folded")
     if not len(inverses):  # nothing is shown
         return
-    of_entries, *_ = LogStretches.of(np.linalg.inv(inverses).astype(np.float64)).distortion()
+    between_entries = np.linalg.inv(inverses) / np.array(pieces.sheet.scale)[:, None]
+    of_entries, *_ = LogStretches.of(between_entries).distortion()
     of_pieces, *_ = LogStretches.of(pieces.jacobians[piece[known]]).distortion()
     if abs(of_entries - of_pieces) > DISTORTION_SHARE * of_entries + DISTORTION_FLOOR:
         raise InvalidResult(

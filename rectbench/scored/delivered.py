@@ -49,11 +49,6 @@ class DeliveredSide:
         view_px = len(scored.pixels) * math.prod(scored.cell_px)
         return self.pieces.areas_within(scored.middle, scored.edge(share) * scored.reach) / view_px
 
-    @cached_property
-    def log_stretches(self) -> LogStretches:
-        """Of the pieces."""
-        return LogStretches.of(self.pieces.jacobians)
-
 
 @dataclass(frozen=True, eq=False)
 class Delivered:
@@ -109,9 +104,13 @@ class Delivered:
         """That on A_s; NaN where the method does not show all of it."""
         if not self.keeps(share):
             return math.nan
-        sides = (self.left, self.right)
-        weights = np.concatenate([side.shares(share) for side in sides])
-        return LogStretches.joined([side.log_stretches for side in sides]).distortion(weights)[0]
+        weights = np.concatenate([side.shares(share) for side in (self.left, self.right)])
+        return self._log_stretches.distortion(weights)[0]
+
+    @cached_property
+    def _log_stretches(self) -> LogStretches:
+        """Of all pieces, left then right."""
+        return LogStretches.of(np.concatenate([side.pieces.jacobians for side in (self.left, self.right)]))
 
     @property
     def shares_kept(self) -> tuple[float, ...]:

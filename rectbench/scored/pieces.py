@@ -8,6 +8,7 @@ between its entries adds up to these: bending it to have less distortion here ma
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -15,7 +16,6 @@ from numpy.typing import NDArray
 
 from rectbench.types import BoolArray, FloatArray
 from rectbench.warps.lookup.tables import OUTSIDE, Table, lookup_table
-from rectbench.warps.rectification import LARGEST_SIDE_PX
 from rectbench.warps.targets import Framed
 from rectbench.warps.warp import Warp
 
@@ -38,10 +38,10 @@ class Sheet:
     scale: tuple[float, float] = (1.0, 1.0)
     """Its width and height against the delivered one's."""
 
-    def finer(self, scale: float) -> Sheet:
-        """The same image `scale` times as large, as far as that is feasible."""
-        scale = min(scale, math.sqrt(LARGEST_TABLE / math.prod(self.size)))
-        width, height = (min(LARGEST_SIDE_PX, max(side, round(scale * side))) for side in self.size)
+    def finer(self, entries: float) -> Sheet:
+        """The same image with at least so many entries, as far as that is feasible."""
+        least = round(math.sqrt(min(entries, LARGEST_TABLE)))
+        width, height = (max(side, least) for side in self.size)
         scales = width / self.size[0], height / self.size[1]
         # The harness's own frame: a target may make anything of `framed`.
         warp = replace(self.warp, target=Framed(self.warp.target, -0.5, -0.5, *scales))
@@ -77,7 +77,7 @@ class Pieces:
             count = min(entries, 2 * count * FEWEST_PIECES // len(found.areas_px))
             found = cls.between(delivered, count)
         if found.are_few:
-            finer = delivered.finer(math.sqrt(2 * FEWEST_PIECES / len(found.areas_px)))
+            finer = delivered.finer(2 * entries * FEWEST_PIECES / len(found.areas_px))
             found = cls.between(finer, math.prod(finer.size))
         return found
 
@@ -86,33 +86,21 @@ class Pieces:
         """About `count` pieces of a frame, those of them that show the source."""
         spacing = math.sqrt(math.prod(sheet.size) / count)
         columns, rows = (_spread(side, spacing) for side in sheet.size)
-        corners, is_known = _corners(sheet.table, columns, rows)
-        across, down = np.diff(corners, axis=2), np.diff(corners, axis=1)
-        across, down = (across[:, 1:] + across[:, :-1]) / 2, (down[:, :, 1:] + down[:, :, :-1]) / 2
-        middles = (corners[:, 1:, 1:] + corners[:, :-1, 1:] + corners[:, 1:, :-1] + corners[:, :-1, :-1]) / 4
-        halves = (np.abs(across) + np.abs(down)) / 2
-        camera = sheet.warp.source
-        centre, half_image = (np.array(camera.size) - 1) / 2, np.array(camera.size) / 2
-        with np.errstate(invalid="ignore"):
-            off = np.abs(middles - centre[:, None, None]) - half_image[:, None, None]
-            chosen = np.flatnonzero((off < halves).all(axis=0))
-        whole = is_known[1:, 1:] & is_known[:-1, 1:] & is_known[1:, :-1] & is_known[:-1, :-1]
-        guessed = np.flatnonzero(~whole.ravel()[chosen])
-        seen = np.ones(len(chosen), dtype=bool)
-        seen[guessed] = camera.unproject(middles.reshape(2, -1)[:, chosen[guessed]].T)[1]
-        chosen = chosen[seen]
-        across, down, middles, halves = (
-            plane.reshape(2, -1)[:, chosen] for plane in (across, down, middles, halves)
-        )
-        steps = np.stack(np.meshgrid(np.diff(columns) / sheet.scale[0], np.diff(rows) / sheet.scale[1]))
-        steps = steps.reshape(2, -1)[:, chosen]
+        corners, known = _corners(sheet.table, columns, rows)
+        quads = corners[:, :-1, :-1], corners[:, :-1, 1:], corners[:, 1:, :-1], corners[:, 1:, 1:]
+        shows = _shows(quads, known[:-1, :-1] & known[:-1, 1:] & known[1:, :-1] & known[1:, 1:], sheet)
+        top_left, top_right, low_left, low_right = (corner[:, shows] for corner in quads)
+        across = (top_right - top_left + low_right - low_left) / 2
+        down = (low_left - top_left + low_right - top_right) / 2
+        middles, halves = (top_left + top_right + low_left + low_right) / 4, (abs(across) + abs(down)) / 2
         areas = across[0] * down[1] - across[1] * down[0]
+        steps = np.stack(np.meshgrid(np.diff(columns) / sheet.scale[0], np.diff(rows) / sheet.scale[1]))
         with np.errstate(divide="ignore", invalid="ignore"):
-            J = np.array([[down[1], -down[0]], [-across[1], across[0]]]) / areas * steps[:, None]
-        numbers = np.full(whole.shape, -1)
-        numbers.ravel()[chosen] = np.arange(len(chosen))
-        J = np.ascontiguousarray(np.moveaxis(J, 2, 0))
-        return cls(sheet, columns, rows, numbers, middles, halves, areas, J)
+            J = np.array([[down[1], -down[0]], [-across[1], across[0]]]) / areas * steps[:, None, shows]
+        numbers = np.where(shows, np.cumsum(shows).reshape(shows.shape) - 1, -1)
+        return cls(
+            sheet, columns, rows, numbers, middles, halves, areas, np.ascontiguousarray(np.moveaxis(J, 2, 0))
+        )
 
     @property
     def are_few(self) -> bool:
@@ -140,22 +128,36 @@ class Pieces:
         return held
 
     def areas_within(self, middle: FloatArray, reach: FloatArray) -> FloatArray:
-        """[M], source pixels² of each piece in the image and within `reach` [2] of `middle` [2]."""
-        camera_middle = (np.array(self.sheet.warp.source.size) - 1) / 2
-        camera_reach = np.array(self.sheet.warp.source.size) / 2
-        low = np.maximum(middle - reach, camera_middle - camera_reach)
-        high = np.minimum(middle + reach, camera_middle + camera_reach)
-        starts = np.maximum(self.middles - self.halves, low[:, None])
-        ends = np.minimum(self.middles + self.halves, high[:, None])
-        shares = np.maximum(0.0, ends - starts) / (2 * self.halves)
+        """[M], source pixels² of each piece in the image and so far from the `middle` [2] as `reach` [2].
+
+        By the extents of pieces, which are smaller than what they are cut by.
+        """
+        low = np.maximum(middle - reach, -0.5)[:, None]
+        high = np.minimum(middle + reach, np.array(self.sheet.warp.source.size) - 0.5)[:, None]
+        inwards = np.minimum(high - self.middles, self.middles - low)
+        shares = np.clip(inwards / (2 * self.halves) + 0.5, 0.0, 1.0)
         areas: FloatArray = self.areas_px * shares[0] * shares[1]
         return areas
+
+
+def _shows(quads: Sequence[FloatArray], whole: BoolArray, sheet: Sheet) -> BoolArray:
+    """[R - 1, C - 1], of the quads of these corners [2, R - 1, C - 1] each: which show the source image.
+
+    Those at the rim of what the lens sees are not `whole`; their middles are asked.
+    """
+    camera = sheet.warp.source
+    low, high = np.minimum.reduce(quads), np.maximum.reduce(quads)
+    with np.errstate(invalid="ignore"):
+        shows: BoolArray = np.all((high > -0.5) & (low < np.array(camera.size)[:, None, None] - 0.5), axis=0)
+    rim = shows & ~whole
+    shows[rim] = camera.unproject(np.mean([corner[:, rim] for corner in quads], axis=0).T)[1]
+    return shows
 
 
 def _spread(side: int, spacing: float) -> NDArray[np.intp]:
     """Whole numbers from the first to the last of a side, about so far apart."""
     steps = max(1, min(side - 1, round((side - 1) / spacing)))
-    return np.rint(np.linspace(0, max(side - 1, 1), steps + 1)).astype(np.intp)
+    return np.rint(np.linspace(0, side - 1, steps + 1)).astype(np.intp)
 
 
 def _corners(table: Table, columns: NDArray[np.intp], rows: NDArray[np.intp]) -> tuple[FloatArray, BoolArray]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -99,11 +98,6 @@ class LogStretches:
             large, small = np.log(large), np.log(small)
         return cls((large + small) / 2, (large - small) / 2)
 
-    @classmethod
-    def joined(cls, parts: Sequence[LogStretches]) -> LogStretches:
-        """One after another."""
-        return cls(np.concatenate([p.size for p in parts]), np.concatenate([p.squeeze for p in parts]))
-
     def distortion(self, weights: FloatArray | None = None) -> tuple[float, float, float]:
         """RMS of log σ1 and log σ2 about their common mean; its parts area and anisotropy.
 
@@ -113,14 +107,14 @@ class LogStretches:
         """
         size, squeeze = self.size, self.squeeze
         weights = np.ones(len(size)) if weights is None else weights
-        if not weights.all():
+        if not np.isfinite(size).all():
             counts = weights > 0
             size, squeeze, weights = size[counts], squeeze[counts], weights[counts]
-        if not (size.size and np.isfinite(size).all()):
+        total = weights.sum()
+        if not (total > 0 and np.isfinite(size).all()):
             return math.nan, math.nan, math.nan
-        weights = weights / weights.sum()
-        area = math.sqrt(weights @ np.square(size - weights @ size))
-        anisotropy = math.sqrt(weights @ np.square(squeeze))
+        area = math.sqrt(weights @ np.square(size - weights @ size / total) / total)
+        anisotropy = math.sqrt(weights @ np.square(squeeze) / total)
         return math.hypot(area, anisotropy), area, anisotropy
 
 

@@ -10,7 +10,8 @@ from hypothesis import given, settings
 
 import rectbench as rb
 from rectbench.metrics import log_distortion, log_distortion_on_view
-from rectbench.scored import Delivered, ScoredView
+from rectbench.scored import Delivered, ScoredView, check_agreement
+from rectbench.warps.jacobians import LogStretches
 from tests.rigs_for_tests import rigs
 
 SHARES = (0.3, 0.5, 0.95, 1.0)
@@ -121,3 +122,18 @@ def test_a_uniform_scale_has_no_log_distortion() -> None:
     warp = rb.Warp(lens, np.eye(3), rb.Perspective.from_focal(300.0, 239.5, 179.5))
     rect = rb.Rectification(pair, warp, warp, (480, 360))
     assert log_distortion_on_view(rect, pair, 1.0) == pytest.approx(0, abs=1e-5)  # of float32 entries
+
+
+@pytest.mark.parametrize("size", [(1, 1), (1, 300), (2, 2), (7, 5)])
+def test_frames_of_a_few_pixels_are_scored_as_larger_ones(size: tuple[int, int]) -> None:
+    pair = rb.load_rig("t265").scaled(0.25)
+    rect = rb.rectify(pair, method="abraham")
+    tiny = rect.windowed((-0.5, -0.5), rect.size, size)
+    found = [Delivered.of(r, ScoredView.of(pair)) for r in (rect, tiny)]
+    check_agreement(tiny, found[1])
+    whole, small = (delivered.within(0.95) for delivered in found)
+    stretch = np.divide(rect.size, size)[:, None]
+    expected = LogStretches.of(whole.both).distortion(whole.weights)[0]
+    assert LogStretches.of(small.both * stretch).distortion(small.weights)[0] == pytest.approx(
+        expected, rel=0.01
+    )
