@@ -229,7 +229,7 @@ class DistortionMetric(Metric):
     )
 
     def compute(self, case: Case) -> dict[str, float]:
-        """L of both images together, by the harness's own derivative of the map."""
+        """L of both images together, by their lookup tables."""
         shown = case.delivered.shown
         scaled = {f"distortion_{name}": float(distortion_of(shown, name)) for name in SCALED}
         return {"distortion_native": float(case.once(_native)), **scaled}

@@ -158,7 +158,7 @@ class Known(Protocol):
 
     @property
     def scored_view(self) -> ScoredView:
-        """The source pixels that rectifications are scored on, the same for all methods."""
+        """The view that rectifications are scored on, the same for all methods."""
 
     @property
     def seen_view(self) -> SeenView:
@@ -231,7 +231,7 @@ class Case:
 
     @property
     def delivered(self) -> Delivered:
-        """What the map does at the scored pixels, as it is shown: what distortion is made of."""
+        """What the lookup tables do to the view of the rig: what distortion is made of."""
         return self.once(_delivered)
 
     def once(self, compute: Callable[[Case], T]) -> T:

@@ -23,7 +23,7 @@ from rectbench.types import BoolArray, FloatArray
 from rectbench.warps.lookup.resampling import Side
 
 SCORED_PIXELS = 10_000
-"""Source pixels an image; the sampling error of a log distortion is then some 0.1 %."""
+"""Source pixels an image, by which is told what of the view is shown."""
 MIDDLE_PIXELS = 2_000
 """Source pixels an image by which the middle of the view is found."""
 SHARES = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.75, 0.8, 0.9, 0.95, 1.0)
