@@ -60,7 +60,7 @@ class Delivered:
     >>> found.keeps(0.4), found.keeps(0.95)
     (True, False)
     >>> round(found.log_distortion(0.4), 2), found.log_distortion(0.95)
-    (0.12, nan)
+    (0.24, nan)
     """
 
     left: DeliveredSide
