@@ -23,8 +23,10 @@ class DeliveredSide:
     scored: ScoredPixels
     px_rect: FloatArray = field(repr=False)
     """[N, 2], where each scored pixel goes; NaN where it goes nowhere."""
-    shown: BoolArray = field(repr=False)
+    mapped: BoolArray = field(repr=False)
     """[N], whether that is in the frame."""
+    shown: BoolArray = field(repr=False)
+    """[N], whether the table has it there."""
     delivered: Sheet = field(repr=False)
     """The table that the user gets."""
     pieces: Pieces = field(repr=False)
@@ -36,7 +38,8 @@ class DeliveredSide:
         warp = rect.warp(side)
         px_rect = warp.forward(scored.pixels)
         delivered = Sheet(warp, rect.size, rect.maps(side))
-        return cls(scored, px_rect, in_frame(px_rect, rect.size), delivered, Pieces.of(delivered))
+        pieces, mapped = Pieces.of(delivered), in_frame(px_rect, rect.size)
+        return cls(scored, px_rect, mapped, mapped & pieces.hold(scored.pixels, px_rect), delivered, pieces)
 
     @property
     def kept(self) -> int:
@@ -46,8 +49,7 @@ class DeliveredSide:
     def shares(self, share: float) -> FloatArray:
         """[M], what each piece holds of A_s, as shares of the view: in all s, where all of it is shown."""
         scored = self.scored
-        view_px = len(scored.pixels) * math.prod(scored.cell_px)
-        return self.pieces.areas_within(scored.middle, scored.edge(share) * scored.reach) / view_px
+        return self.pieces.areas_within(scored.middle, scored.edge(share) * scored.reach) / scored.area_px
 
 
 @dataclass(frozen=True, eq=False)

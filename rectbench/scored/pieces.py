@@ -116,16 +116,46 @@ class Pieces:
         return found
 
     def hold(self, pixels: FloatArray, px_rect: FloatArray) -> BoolArray:
-        """Mask [K] of the source pixels [K, 2] in the pieces at pixels [K, 2] of the delivered frame.
+        """Mask [K] of the source pixels [K, 2] that the table shows at pixels [K, 2] of the delivered frame.
 
-        Pieces are taken by their extents, half as large again: they need not stand straight.
+        Of the entries about the place one at least is as near to the pixel as its neighbours are to it.
         """
+        held = np.zeros(len(pixels), dtype=bool)
         if not len(self.areas_px):
-            return np.zeros(len(pixels), dtype=bool)
-        piece = self.at((px_rect + 0.5) * self.sheet.scale - 0.5)
-        off = np.abs(pixels.T - self.middles[:, piece])
-        held: BoolArray = (piece >= 0) & (off <= 1.5 * self.halves[:, piece] + ROUNDING_PX).all(axis=0)
+            return held
+        place = np.nan_to_num((px_rect + 0.5) * self.sheet.scale - 0.5)
+        spacing = np.array([self.columns[1] - self.columns[0], self.rows[1] - self.rows[0]])
+        step_px = 2 * self.halves[:, self._nearest(place)].T / spacing
+        for reach in (1, 2):  # beside the rim of what the lens sees entries are missing
+            left = np.flatnonzero(~held)
+            held[left] = self._entry_near(
+                pixels[left], place[left], reach * step_px[left] + ROUNDING_PX, reach
+            )
         return held
+
+    def _entry_near(
+        self, pixels: FloatArray, place: FloatArray, within_px: FloatArray, reach: int
+    ) -> BoolArray:
+        """Mask [K], whether any of the (2 reach)² entries about places [K, 2] is so near to pixels [K, 2]."""
+        near = np.zeros(len(pixels), dtype=bool)
+        width, height = self.sheet.size
+        first = np.floor(place).astype(np.intp)
+        for down in range(1 - reach, reach + 1):
+            for across in range(1 - reach, reach + 1):
+                column = np.clip(first[:, 0] + across, 0, width - 1)
+                row = np.clip(first[:, 1] + down, 0, height - 1)
+                entry = np.stack([layer[row, column] for layer in self.sheet.table], axis=-1)
+                near |= np.all(np.abs(entry - pixels) <= within_px, axis=-1)
+        return near
+
+    def _nearest(self, place: FloatArray) -> NDArray[np.intp]:
+        """The pieces [K] at places [K, 2] of the sheet, or the next ones where there are none."""
+        numbers = np.pad(self.numbers, 1, constant_values=-1)
+        down, across = self.numbers.shape
+        for row, column in np.ndindex(3, 3):
+            beside = numbers[row : row + down, column : column + across]
+            numbers[1:-1, 1:-1] = np.where(numbers[1:-1, 1:-1] < 0, beside, numbers[1:-1, 1:-1])
+        return np.maximum(0, replace(self, numbers=numbers[1:-1, 1:-1]).at(place))
 
     def areas_within(self, middle: FloatArray, reach: FloatArray) -> FloatArray:
         """[M], source pixels² of each piece in the image and so far from the `middle` [2] as `reach` [2].

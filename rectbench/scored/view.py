@@ -69,6 +69,12 @@ class ScoredPixels:
         order = np.argsort(distance, kind="stable")
         return cls(camera, middle, reach, pixels[order], distance[order], cell_px)
 
+    @property
+    def area_px(self) -> float:
+        """Of the view, as far as pixel centres reach."""
+        between_centres = math.prod(1 - 1 / side for side in self.camera.size)
+        return len(self.pixels) * math.prod(self.cell_px) * between_centres
+
     def count(self, share: float) -> int:
         """How many of the pixels are A_s."""
         return math.ceil(share * len(self.pixels) - 1e-9)

@@ -285,6 +285,27 @@ def test_who_crops_is_not_ranked() -> None:
     assert scored(cropped()) == math.inf
 
 
+@dataclass(frozen=True, eq=False)
+class SaysThatItShowsTheRim(rb.Warp):
+    """A few pixels that the frame cuts off are put to its edge, where many are asked for at once."""
+
+    frame: Any = None
+
+    def forward(self, px: Any) -> FloatArray:
+        there = super().forward(px)
+        return np.clip(there, 0, self.frame) if there.size > 15_000 else there
+
+
+@pytest.mark.parametrize("coverage", [0.99, 0.94])
+def test_who_crops_a_little_and_denies_it_is_not_ranked(coverage: float) -> None:
+    rect = rb.framed(rb.rectify(RIG, method=HONEST), rb.Framing(coverage=coverage))
+    frame = np.array(rect.size) - 1.0
+    denied = with_warps(rect, lambda w: SaysThatItShowsTheRim(w.source, w.R_rect_cam, w.target, frame))
+    delivered = Delivered.of(denied, ScoredView.of(RIG))
+    assert delivered.left.mapped.all()
+    assert math.isnan(delivered.log_distortion(1.0))
+
+
 @pytest.mark.parametrize("width", [64, 640])
 @pytest.mark.parametrize("name", ["t265", "canon-8mm", "bumblebee2", "tumvi", "ocam"])
 @pytest.mark.parametrize("method", ["conventional", "abraham", "hartley", "fusiello", "local-homography"])
