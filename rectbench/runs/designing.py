@@ -12,6 +12,7 @@ from typing import Any
 import pandas as pd
 
 from rectbench.errors import InvalidInput, UnknownName
+from rectbench.pairs.spec import NO_SCENE
 from rectbench.plugins.metric import Column
 from rectbench.plugins.result import distinct
 from rectbench.runs.run import Run, read_run
@@ -19,11 +20,9 @@ from rectbench.runs.units import Place, by_place, floor_of
 from rectbench.statistics.components import Spread
 from rectbench.statistics.design import Needs
 from rectbench.statistics.intervals import LEAST_UNITS, counted, ratio
-from rectbench.statistics.paired import NOISE
+from rectbench.statistics.paired import TIE
 from rectbench.statistics.power import resolved
 
-NO_SCENE = "none"
-"""The scene of lens pairs, of which nobody makes images."""
 NESTED = ("motion", "scene", "seed")
 """The levels within a rig, as `Place` has them."""
 OF_NOISY_POSES = ("Row error", "Reconstruction")
@@ -137,5 +136,5 @@ def _log_ratios(a: Mapping[Place, float], b: Mapping[Place, float], column: Colu
             )
         if math.isfinite(a[place]) and math.isfinite(b[place]):
             log = math.log(max(a[place], floor) / max(b[place], floor))
-            found[place] = 0.0 if abs(log) <= NOISE else log
+            found[place] = 0.0 if abs(log) <= TIE else log
     return dict(sorted(found.items()))

@@ -10,8 +10,8 @@ from typing import TypeVar
 
 import numpy as np
 
-from rectbench.statistics.intervals import LEAST_UNITS, counted, ratio
-from rectbench.statistics.paired import NOISE, better, log_ratios
+from rectbench.statistics.intervals import ALPHA, LEAST_UNITS, counted, ratio
+from rectbench.statistics.paired import FLOOR, better, log_ratios
 from rectbench.statistics.power import resolved
 from rectbench.types import FloatArray
 
@@ -20,7 +20,7 @@ Unit = TypeVar("Unit", bound=Hashable)
 
 LEAST_SIGNED_RANK_UNITS = 6
 """With five units the least two-sided p of a signed-rank test is 2 / 2**5 = 0.0625."""
-NO_SIGNED_RANK = f"below {LEAST_SIGNED_RANK_UNITS} no signed-rank test reaches 0.05"
+NO_SIGNED_RANK = f"below {LEAST_SIGNED_RANK_UNITS} no signed-rank test reaches {ALPHA:g}"
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ class Ranking:
     reason: str
 
 
-def rank(values: Mapping[str, Mapping[Unit, float]], *, floor: float = NOISE, unit: str = "unit") -> Ranking:
+def rank(values: Mapping[str, Mapping[Unit, float]], *, floor: float = FLOOR, unit: str = "unit") -> Ranking:
     """Rank methods by their values on each unit, lower being better.
 
     Parameters
@@ -62,7 +62,7 @@ def rank(values: Mapping[str, Mapping[Unit, float]], *, floor: float = NOISE, un
     Two methods are told apart by a paired t test of log ratios over the units, p corrected for all pairs
     of compared methods (Holm); so in at most 5 % of benches any two are told apart that are alike. A
     method's rank begins behind those told to be better and ends before those told to be worse. Values
-    that differ by less than 1e-9 of themselves are the same.
+    that differ by less than a millionth of themselves are the same.
 
     Compared are the methods with a finite value on each of the same units: all units but those beyond the
     most that any two methods have in common, which fewer than half of the methods that serve most units
@@ -82,9 +82,8 @@ def rank(values: Mapping[str, Mapping[Unit, float]], *, floor: float = NOISE, un
     }
     every = list(dict.fromkeys(u for numbers in finite.values() for u in numbers))
     units = _counting(finite, every)
-    compared, behind = [], []
-    for method, numbers in finite.items():
-        (compared if units and all(u in numbers for u in units) else behind).append(method)
+    compared = [method for method, numbers in finite.items() if units and numbers.keys() >= set(units)]
+    behind = [method for method in finite if method not in compared]
     compared.sort(key=lambda method: _mean_log(finite[method], units))
     behind.sort(key=lambda method: (-len(finite[method]), _mean_log(finite[method], finite[method])))
     order = (*compared, *behind)
