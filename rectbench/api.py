@@ -270,9 +270,22 @@ def run(
 ) -> pd.DataFrame:
     """Run a report and write its folder: results, tables, figures and `index.html`.
 
-    A report of photographs, such as "real", takes them from the folder `data`.
+    Parameters
+    ----------
+    report : a report's name, path, or the report itself.
+    out : the run's folder; `runs/<report>` by default.
+    methods, scenes, rigs, seeds : what to run in the place of the report's own; names or paths. A "+"
+        before a name adds it to the report's own. Lenses without a scene run whatever `scenes` says, alone if
+        it says "none".
+    data : the folder of photographs, for a report that takes them, such as "real".
+    options : options by method and name, laid over the report's.
+    jobs : worker processes; as many as there are cores by default.
+    dask : the address of a dask scheduler, on whose cluster it runs.
+    fresh : make again what the store has of this run.
+    progress : bars on stderr; on a terminal alone by default.
 
-    The arguments are those of `runs.making.run`. Returns the rows of `results.parquet`.
+    Returns the rows of `results.parquet`. Raises InvalidInput before anything runs where the report, a name,
+    a file or an option cannot be used; Interrupted on Ctrl-C.
 
     >>> import rectbench as rb
     >>> table = rb.run("quick", methods=["+my_rectifier.py"], jobs=2)  # doctest: +SKIP

@@ -1,6 +1,7 @@
 """What Zhou, Dai and Li claim, each as statements that a run can refute."""
 
 from collections.abc import Mapping
+from typing import Any
 
 import rectbench as rb
 
@@ -53,58 +54,57 @@ ABOUT_30_PERCENT_LESS = {"above": 0.6, "below": 0.8}
 VERY_CLOSE = {"above": 0.9, "below": 1.1}
 
 
+def in_each_way(
+    what: str, clause: str, columns: Mapping[str, str], where: str = "", **stated: Any
+) -> list[rb.Statement]:
+    """The same statement under each way to measure."""
+    return [
+        rb.Statement(label=f"{what}, {words}{where}", clause=clause, metric=metric, **stated)
+        for words, metric in columns.items()
+    ]
+
+
 def against(
     clause: str,
     group: str,
     rivals: tuple[str, ...],
     columns: Mapping[str, str],
-    *,
     where: str = "",
-    judges: bool = True,
-    **bounds: float,
+    **stated: Any,
 ) -> list[rb.Statement]:
-    """The ratio of our value to each rival's, under each way to measure."""
+    """The ratio of our value to each rival's."""
+    ours = {"group": group, "method": OURS, "measure": "ratio", **stated}
     return [
-        rb.Statement(
-            label=f"{OURS} / {rival}, {words}{where}",
-            clause=f"{clause} {rival}",
-            group=group,
-            metric=metric,
-            method=OURS,
+        statement
+        for rival in rivals
+        for statement in in_each_way(
+            f"{OURS} / {rival}",
+            f"{clause} {rival}",
+            columns,
+            where,
             against=rival,
             against_options=OPTIONS.get(rival, {}),
-            measure="ratio",
-            judges=judges,
-            **bounds,
+            **ours,
         )
-        for rival in rivals
-        for words, metric in columns.items()
     ]
 
 
 def values(
-    clause: str,
-    group: str,
-    methods: tuple[str, ...],
-    columns: Mapping[str, str],
-    *,
-    judges: bool = True,
-    **bounds: float,
+    clause: str, group: str, methods: tuple[str, ...], columns: Mapping[str, str], **stated: Any
 ) -> list[rb.Statement]:
-    """The value of each method, under each way to measure."""
+    """The value of each method."""
     return [
-        rb.Statement(
-            label=f"{method}, {words}",
-            clause=f"{method} {clause}",
+        statement
+        for method in methods
+        for statement in in_each_way(
+            method,
+            f"{method} {clause}",
+            columns,
             group=group,
-            metric=metric,
             method=method,
             options=OPTIONS.get(method, {}),
-            judges=judges,
-            **bounds,
+            **stated,
         )
-        for method in methods
-        for words, metric in columns.items()
     ]
 
 
@@ -112,20 +112,17 @@ def least_on(
     clause: str, group: str, method: str, rivals: tuple[str, ...], columns: Mapping[str, str], above: int
 ) -> list[rb.Statement]:
     """That the method has the least value on so many of four."""
-    return [
-        rb.Statement(
-            label=f"rigs on which {method} is least, {words}",
-            clause=clause,
-            group=group,
-            metric=metric,
-            method=method,
-            rivals=tuple(rival for rival in rivals if rival != method),
-            measure="count",
-            above=above,
-            of=4,
-        )
-        for words, metric in columns.items()
-    ]
+    return in_each_way(
+        f"rigs on which {method} is least",
+        clause,
+        columns,
+        group=group,
+        method=method,
+        rivals=tuple(rival for rival in rivals if rival != method),
+        measure="count",
+        above=above,
+        of=4,
+    )
 
 
 ROW_ERROR = rb.Claim(

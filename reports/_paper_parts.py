@@ -1,8 +1,10 @@
 """What Zhou, Dai and Li's paper has, part by part, and what became of it."""
 
+from typing import Literal
+
 import rectbench as rb
 
-_PARTS = (
+_PARTS: tuple[tuple[str, Literal["done", "changed", "impossible"], str], ...] = (
     (
         "Theorems 1 and 2 (II-A, III-B)",
         "changed",
@@ -79,4 +81,4 @@ _PARTS = (
     ),
 )
 
-PARTS = tuple(rb.SourcePart(name=name, status=status, why=why) for name, status, why in _PARTS)  # type: ignore[arg-type]
+PARTS = tuple(rb.SourcePart(name=name, status=status, why=why) for name, status, why in _PARTS)

@@ -67,3 +67,9 @@ small_turns = st.tuples(*[st.floats(-5, 5)] * 3)
 off_axis_centres = st.tuples(st.floats(0.08, 0.4), st.floats(-0.02, 0.02), st.floats(-0.02, 0.02))
 rigs = st.builds(rig, st.sampled_from(sorted(LENSES)), small_turns, off_axis_centres)
 """Rigs of every wide lens, nearly along x with small rotations, as in the paper."""
+
+
+def assert_same_pose(read: rb.Rig, written: rb.Rig) -> None:
+    """To rounding."""
+    np.testing.assert_allclose(read.R_right_left, written.R_right_left, atol=1e-14)
+    np.testing.assert_allclose(read.t_right_left, written.t_right_left, atol=1e-14)

@@ -34,6 +34,8 @@ class Entry(NamedTuple):
     summary: str
     value: Any = None
     """The plugin, of a kind of plugins."""
+    columns: tuple[str, ...] = ()
+    """Of a metric, what its numbers are called in rows and by `--metric`."""
 
 
 @dataclass(frozen=True)
@@ -60,8 +62,16 @@ def listed(kind: str) -> Listing:
     if callable(source):
         return Listing(tuple(source()))
     found = registry(source)
-    entries = (Entry(plugin.name, plugin.summary, plugin.value) for plugin in found.plugins())
+    entries = (
+        Entry(plugin.name, plugin.summary, plugin.value, _columns(plugin.value)) for plugin in found.plugins()
+    )
     return Listing((*entries, *(_bundles() if kind == "metrics" else ())), found.broken)
+
+
+def _columns(value: Any) -> tuple[str, ...]:
+    from rectbench.plugins.metric import Metric
+
+    return tuple(column.key for column in value.columns) if isinstance(value, Metric) else ()
 
 
 def _bundles() -> Iterator[Entry]:

@@ -110,7 +110,7 @@ def plan(request: PlanRequest) -> int:
 
     found = plan_report(request)
     show_design(found)
-    return INCOMPLETE if found.told.empty else GOOD
+    return INCOMPLETE if found.planned.empty else GOOD
 
 
 def _incomplete(reason: object) -> int:

@@ -55,7 +55,7 @@ class Statement(BaseModel):
     """Where that one's rows are, if elsewhere."""
     rivals: tuple[str, ...] = ()
     """The methods that it has to be less than, whatever their options. A rival without a number, because its
-    image does not show that much, is none that is less."""
+    image does not show that much, is none that is less; a rig without any rival's number says nothing."""
     measure: Measure = "value"
     """The mean; the geometric mean of the ratio to `against`; the number of rigs on which the method has less
     than each of `rivals`; the share of cells whose ratio is within `within`. Each is taken over rigs, of

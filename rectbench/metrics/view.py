@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from rectbench.plugins.metric import Case, Column, Metric, Tolerance
 from rectbench.scored import SHARES
-from rectbench.warps import Perspective
+from rectbench.types import FloatArray
+from rectbench.warps import Warp
 
 PROJECTION, PERSPECTIVE = "projection", "perspective"
-"""The note of a cell whose rectified images are perspective ones, whatever method made them."""
+"""The note of a cell whose rectified images are perspective ones, whatever its method says of them."""
+PERSPECTIVE_PX = 0.01
+"""An image is a perspective one where a homography of its rays is this near to all of it."""
+LEAST_PIXELS, SAMPLED = 32, 16
+"""Of the view's scored pixels every so many are looked at; fewer tell nothing."""
 
 
 def across_key(share: float) -> str:
@@ -17,6 +24,34 @@ def across_key(share: float) -> str:
     'view_50_deg'
     """
     return f"view_{100 * share:.0f}_deg"
+
+
+def is_perspective(warp: Warp, pixels: FloatArray) -> bool:
+    """Whether a homography takes the rays of source pixels [N, 2] to where the warp takes them.
+
+    >>> import rectbench as rb
+    >>> rig = rb.load_rig("t265")
+    >>> pixels = rb.ScoredView.of(rig).left.pixels
+    >>> [is_perspective(rb.rectify(rig, m).left, pixels) for m in ("conventional", "abraham")]
+    [True, False]
+    """
+    some = pixels[::SAMPLED]
+    px_rect, (rays, _) = warp.forward(some), warp.source.unproject(some)
+    known = np.all(np.isfinite(px_rect), axis=-1)
+    if known.sum() < LEAST_PIXELS:
+        return False
+    rays, px_rect = rays[known], px_rect[known]
+    middle, spread = px_rect.mean(axis=0), px_rect.std()
+    places = (px_rect - middle) / spread
+    none = np.zeros_like(rays)
+    across = np.hstack([rays, none, -places[:, :1] * rays])
+    down = np.hstack([none, rays, -places[:, 1:] * rays])
+    # The homography [9] that solves these equations best, of unit length (Hartley and Zisserman, 4.1).
+    H = np.linalg.svd(np.vstack([across, down]), full_matrices=False)[2][-1].reshape(3, 3)
+    homogeneous = rays @ H.T
+    with np.errstate(divide="ignore", invalid="ignore"):
+        off = (homogeneous[:, :2] / homogeneous[:, 2:] - places) * spread
+    return bool(np.abs(off).max() < PERSPECTIVE_PX)
 
 
 class View(Metric):
@@ -50,8 +85,10 @@ class View(Metric):
 
     def compute(self, case: Case) -> dict[str, float]:
         """Of both images: the lesser share kept, the mean field of view."""
-        if all(isinstance(warp.target, Perspective) for warp in (case.rect.left, case.rect.right)):
-            case.remarks[PROJECTION] = PERSPECTIVE
         view = case.pair.scored_view
+        if is_perspective(case.rect.left, view.left.pixels) and is_perspective(
+            case.rect.right, view.right.pixels
+        ):
+            case.remarks[PROJECTION] = PERSPECTIVE
         across = {across_key(share): view.across_deg(share) for share in SHARES}
         return {"view_kept": case.delivered.kept_share, **across}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -36,13 +37,14 @@ def checked_options(plugin: Plugin[Rectifier], given: Mapping[str, Any]) -> Opti
 
 def fit(plugin: Plugin[Rectifier], problem: Problem, options: Options) -> Rectification:
     """The method's answer, checked; raises InvalidResult for one of the wrong type, shape or values."""
-    rectification = plugin.value.fit(problem, options)
-    check_result(plugin.name, rectification, problem)
-    return rectification
+    return checked_result(plugin.name, plugin.value.fit(problem, options), problem)
 
 
-def check_result(method: str, result: object, problem: Problem) -> None:
-    """Raise InvalidResult unless `result` is a rectification of the problem's rig with usable numbers."""
+def checked_result(method: str, result: object, problem: Problem) -> Rectification:
+    """A copy of `result`, so that what a method does to its own afterwards changes nothing.
+
+    Raises InvalidResult unless it is a rectification of the problem's rig with usable numbers.
+    """
     if type(result) is not Rectification:  # a subclass may show its user another map than it is scored by
         raise InvalidResult(f"{method} returned {type(result).__name__}; expected a Rectification itself")
     for side in ("left", "right"):
@@ -59,3 +61,4 @@ def check_result(method: str, result: object, problem: Problem) -> None:
             raise InvalidResult(f"{method}: {side}.forward gives no finite pixel, or an infinite one")
         if not in_frame(mapped, result.size).any():
             raise InvalidResult(f"{method}: no {side} pixel lands in the rectified image: it is empty")
+    return replace(result, left=replace(result.left), right=replace(result.right))

@@ -17,7 +17,7 @@ from rectbench.runs.record import LEADING, TEXTS
 from rectbench.runs.run import read_run
 from rectbench.runs.units import GEOMETRIC, floor_of
 from rectbench.statistics.intervals import Interval, mean_interval, nested_means, ratio
-from rectbench.statistics.paired import NOISE
+from rectbench.statistics.paired import TIE
 
 _OUTERMOST = ("rig", "motion", "scene")
 LEVELS = [*_OUTERMOST, *(name for name in KEY if name not in (*_OUTERMOST, "method", "seed")), "seed"]
@@ -109,7 +109,7 @@ def _log_ratio(a: float, b: float, column: Column) -> float:
     """What is below the column's floor counts as that."""
     first, second = (math.log(max(value, floor_of(column))) for value in (a, b))
     change = _gap(first, second, column)
-    return 0.0 if abs(change) <= NOISE else change
+    return 0.0 if abs(change) <= TIE else change
 
 
 def _differs(row: pd.Series[str]) -> bool:

@@ -12,18 +12,18 @@ from typing import Any
 import pandas as pd
 
 from rectbench.errors import InvalidInput, UnknownName
-from rectbench.plugins.metric import Column
-from rectbench.plugins.result import distinct
+from rectbench.pairs.spec import NO_SCENE
+from rectbench.plugins.metric import METRICS, Column
+from rectbench.plugins.result import EXACT_POSE, distinct
+from rectbench.registry import registry
 from rectbench.runs.run import Run, read_run
 from rectbench.runs.units import Place, by_place, floor_of
 from rectbench.statistics.components import Spread
 from rectbench.statistics.design import Needs
 from rectbench.statistics.intervals import LEAST_UNITS, counted, ratio
-from rectbench.statistics.paired import NOISE
+from rectbench.statistics.paired import TIE
 from rectbench.statistics.power import resolved
 
-NO_SCENE = "none"
-"""The scene of lens pairs, of which nobody makes images."""
 NESTED = ("motion", "scene", "seed")
 """The levels within a rig, as `Place` has them."""
 OF_NOISY_POSES = ("Row error", "Reconstruction")
@@ -47,9 +47,10 @@ class Design:
         have values on; the geometric mean over these of the `ratio` a / b, and the ends `low`, `high` of
         its 95 % interval; the ratio that the design `resolves` in four benches of five at Holm-corrected
         5 %; `rigs_needed` for `detect` with motions, scenes and seeds as they are; `scenes` (of a motion of
-        a rig; 0 of pairs without one), `scenes_needed` with all else as it is, missing where no number is
-        enough, and their `scenes_share` of the variance between rigs, NaN where none has a second one;
-        likewise motions and seeds. `reason` says why a row has no numbers.
+        a rig; 0 of pairs without one), `scenes_needed` with all else as it is, missing where no number of
+        them is enough on so few rigs, and their `scenes_share` of the variance between rigs, NaN where none
+        has a second one; likewise motions and seeds (0 where a seed draws nothing). `reason` says why a row
+        has no numbers.
     """
 
     column: Column
@@ -57,7 +58,7 @@ class Design:
     table: pd.DataFrame
 
     @property
-    def told(self) -> pd.DataFrame:
+    def planned(self) -> pd.DataFrame:
         """The rows that have numbers."""
         return self.table[self.table["reason"] == ""]
 
@@ -66,13 +67,10 @@ def design(folder: Path, detect: float, metric: str | None = None) -> Design:
     """The design of a run, for one of its columns; by default the one that methods are ranked by.
 
     Raises InvalidInput for a folder that holds no run, for a column with numbers below zero, of which there
-    are no ratios, and where no two methods have it; UnknownName for one that the run does not have.
+    are no ratios, and where no two methods have it; UnknownName for one that there is not.
     """
     run = read_run(folder)
-    key = metric or run.catalogue.ranking.key
-    if key not in run.metrics:
-        raise UnknownName("metric", key, run.metrics)
-    column = run.catalogue.column(key)
+    column = run.catalogue.ranking if metric is None else _column(run, metric)
     rows = [
         row
         for part in run.parts
@@ -80,7 +78,7 @@ def design(folder: Path, detect: float, metric: str | None = None) -> Design:
         for row in _rows(part, pose, column, detect)
     ]
     if not rows:
-        raise InvalidInput(f"{folder} has {key} of one method alone; expected two to compare")
+        raise InvalidInput(f"{folder} has {column.key} of {_how_many(run, column)}; expected two to compare")
     table = pd.DataFrame(rows, columns=COLUMNS)
     whole = {name: "Int64" for name in COLUMNS if name.endswith("needed") or name in ("rigs", *_COUNTS)}
     return Design(column, detect, table.astype(whole))
@@ -89,15 +87,40 @@ def design(folder: Path, detect: float, metric: str | None = None) -> Design:
 _COUNTS = tuple(f"{level}s" for level in NESTED)
 
 
+def _column(run: Run, key: str) -> Column:
+    """The run's column of this key; a metric's name is told its columns."""
+    if key in run.metrics:
+        return run.catalogue.column(key)
+    metrics = registry(METRICS)
+    if key in metrics.names():
+        own = [column.key for column in metrics.get(key).value.columns if column.key in run.metrics]
+        if own:
+            raise InvalidInput(f"metric is {key}, of several numbers; expected one of {', '.join(own)}")
+    if any(column.key == key for column in run.catalogue.columns):
+        whose = "`rectbench list metrics` tells which metric has it"
+        raise InvalidInput(f"{run.folder} has no {key}, which its report does not measure; {whose}")
+    raise UnknownName("metric", key, run.metrics)
+
+
+def _how_many(run: Run, column: Column) -> str:
+    return "one method alone" if column.key in run.metrics else "no method"
+
+
+def _is_of_noise(part: Run, column: Column) -> bool:
+    topic = next((name for name, columns in part.catalogue.topics.items() if column in columns), "")
+    return topic in OF_NOISY_POSES
+
+
 def _poses(part: Run, column: Column) -> tuple[str, ...]:
     """Under which poses the column tells methods apart."""
-    topic = next((name for name, columns in part.catalogue.topics.items() if column in columns), "")
-    return part.noisy_poses if topic in OF_NOISY_POSES else (part.geometric_pose,)
+    return part.noisy_poses if _is_of_noise(part, column) else (part.geometric_pose,)
 
 
 def _rows(part: Run, pose: str, column: Column, detect: float) -> Iterator[dict[str, Any]]:
     numbers = {m: own for m, own in by_place(part.select(pose=pose), column).items() if own}
     pairs = list(combinations(numbers, 2))
+    draws_for_all = pose != EXACT_POSE or _is_of_noise(part, column)
+    drawing = {result.method for result in part.select(pose=pose) if result.cell.matches}
     for a, b in pairs:
         logs = _log_ratios(numbers[a], numbers[b], column)
         row: dict[str, Any] = {"part": part.group, "pose": pose, "a": a, "b": b}
@@ -108,6 +131,8 @@ def _rows(part: Run, pose: str, column: Column, detect: float) -> Iterator[dict[
         row |= {"rigs": rigs, "reason": "", **_planned(Spread.of(logs), math.log1p(detect), len(pairs))}
         if {scene for _, _, scene, _ in logs} == {NO_SCENE}:
             row |= {"scenes": 0, "scenes_needed": None, "scenes_share": 0.0}
+        if row["seeds"] == 1 and not (draws_for_all or {a, b} & drawing):
+            row |= {"seeds": 0, "seeds_needed": None, "seeds_share": 0.0}
         yield row
 
 
@@ -137,5 +162,5 @@ def _log_ratios(a: Mapping[Place, float], b: Mapping[Place, float], column: Colu
             )
         if math.isfinite(a[place]) and math.isfinite(b[place]):
             log = math.log(max(a[place], floor) / max(b[place], floor))
-            found[place] = 0.0 if abs(log) <= NOISE else log
+            found[place] = 0.0 if abs(log) <= TIE else log
     return dict(sorted(found.items()))

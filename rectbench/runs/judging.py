@@ -20,24 +20,19 @@ from dataclasses import dataclass, field, replace
 from rectbench.errors import InvalidInput
 from rectbench.experiments.claims import Claim, Statement, Verdict
 from rectbench.plugins.result import Result
+from rectbench.runs.units import place_of
 from rectbench.statistics.intervals import (
+    ALPHA,
     Interval,
     count_interval,
     geometric_interval,
     mean_interval,
     nested_means,
 )
-
-LEVEL = 0.05
-"""Of the exact test of a count."""
-TIE = 1e-6
-"""Values this close, relatively, are one: neither method is less than the other."""
-
-Place = tuple[str, str, str, str, int]
-"""Rig, motion, scene, pose, seed."""
+from rectbench.statistics.paired import TIE
 
 _Numbers = dict[tuple[Hashable, ...], float]
-"""The number of each cell by its place and the method's options."""
+"""The number of each cell by its place, its pose and the method's options."""
 
 
 @dataclass(frozen=True)
@@ -163,7 +158,7 @@ def _counted(statement: Statement, by_rig: Mapping[str, float]) -> _Judgement:
     remark = f"as few if the claim were true: p = {as_few:.2g}"
     if claimed == 1:
         remark = f"claimed of all, not so on {rigs - least}"
-    if as_few < LEVEL:
+    if as_few < ALPHA:
         verdict = "not held"
     elif rigs < needed:
         remark = f"{_rigs(rigs)} of the {needed} that it speaks of"
@@ -216,18 +211,23 @@ def _against(statement: Statement, own: Sequence[Result], others: Sequence[Resul
 
 
 def _against_each(statement: Statement, own: Sequence[Result], rivals: Sequence[Sequence[Result]]) -> _Found:
-    """The largest ratio to any rival: 0 where no rival has a number, infinite where they alone have one."""
+    """The largest ratio to any rival that has a number, infinite where they alone have one.
+
+    A rig on which no rival has one says nothing.
+    """
     if not all(rivals) or not own:
         return _Found({}, 0, ())
     alone = _alone(statement, own)
     against = [(_against(statement, own, rows), _alone(statement, rows)) for rows in rivals]
+    contested = {rig for _, rival in against for rig in rival.by_rig}
     by_rig = {
         rig: max(found.by_rig.get(rig, 0.0) for found, _ in against) if math.isfinite(own_value) else math.inf
         for rig, own_value in alone.by_rig.items()
+        if rig in contested
     }
-    lost = {rig: math.inf for rig in alone.absent if any(rig in rival.by_rig for _, rival in against)}
+    lost = {rig: math.inf for rig in alone.absent if rig in contested}
     failed = alone.failed + sum(rival.failed for _, rival in against)
-    absent = tuple(rig for rig in alone.absent if rig not in lost)
+    absent = tuple(rig for rig in (*alone.by_rig, *alone.absent) if rig not in contested)
     return _Found({**by_rig, **lost}, failed, absent)
 
 
@@ -282,6 +282,6 @@ def _rivals(statement: Statement, rows: Sequence[Result]) -> list[list[Result]]:
     return found
 
 
-def _place(row: Result) -> Place:
-    """Where methods are compared: the pair, and the seed; the rig first, as the unit."""
-    return row.rig, row.motion, row.scene, row.pose, row.seed
+def _place(row: Result) -> tuple[Hashable, ...]:
+    """Where methods are compared: the rig first, as the unit, and the pose."""
+    return (*place_of(row), row.pose)

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
 from contextlib import nullcontext
 from pathlib import Path
-from typing import Any
 
 import pandas as pd
 
@@ -27,13 +25,9 @@ RUNS = Path("runs")
 def run(
     report: Report | str | Path,
     out: str | Path | None = None,
+    selection: Selection | None = None,
     *,
-    methods: Sequence[str] | None = None,
-    scenes: Sequence[str] | None = None,
-    rigs: Sequence[str] | None = None,
-    seeds: Sequence[int] | None = None,
     data: str | Path | None = None,
-    options: Mapping[str, Mapping[str, Any]] | None = None,
     jobs: int | None = None,
     dask: str | None = None,
     fresh: bool = False,
@@ -44,23 +38,15 @@ def run(
 
     Parameters
     ----------
-    report : a report's name, path, or the report itself.
-    out : the run's folder; `runs/<report>` by default.
-    methods, scenes, rigs, seeds : what to run in the place of the report's own; names or paths. A "+"
-        before a name adds it to the report's own. Lenses without a scene run whatever `scenes` says, alone if
-        it says "none".
-    data : the folder of photographs, for a report that takes them.
-    options : options by method and name, laid over the report's.
-    jobs : worker processes; as many as there are cores by default.
-    dask, fresh : see `execute`.
-    progress : bars on stderr; on a terminal alone by default.
+    report, out, data, jobs, dask, fresh, progress : as those of `rectbench.run`.
+    selection : what to run of the report; all of it by default.
     workers : those to run it, in the place of `jobs` of its own.
 
     Returns one row a cell, in the report's order. Raises InvalidInput before anything runs where the
     report, a name, a file or an option cannot be used; Interrupted on Ctrl-C.
     """
     begin = time.monotonic()
-    plan = make_plan(find_report(report), Selection(methods, scenes, rigs, seeds, options or {}), data)
+    plan = make_plan(find_report(report), selection, data)
     checked_jobs(jobs)
     folder = run_folder(plan.report, out)
     check_writable(folder)

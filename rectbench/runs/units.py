@@ -8,11 +8,16 @@ from collections.abc import Iterable, Mapping
 from rectbench.plugins.metric import Column
 from rectbench.plugins.result import Result
 from rectbench.statistics.intervals import nested_means, ratio
-from rectbench.statistics.paired import NOISE
+from rectbench.statistics.paired import FLOOR
 
 Place = tuple[str, str, str, int]
 """Rig, motion, scene, seed: from what is drawn independently to what is nested in it."""
 GEOMETRIC: str = "geometric"
+
+
+def place_of(result: Result) -> Place:
+    """Where a result is from."""
+    return result.rig, result.motion, result.scene, result.seed
 
 
 def by_place(results: Iterable[Result], column: Column) -> dict[str, dict[Place, float]]:
@@ -21,8 +26,7 @@ def by_place(results: Iterable[Result], column: Column) -> dict[str, dict[Place,
     for result in results:
         numbers = found.setdefault(result.method, {})
         if result.ok and column.key in result.metrics:
-            place = (result.rig, result.motion, result.scene, result.seed)
-            numbers[place] = result.metrics[column.key]
+            numbers[place_of(result)] = result.metrics[column.key]
     return found
 
 
@@ -48,7 +52,7 @@ def by_rig(results: Iterable[Result], column: Column) -> dict[str, dict[str, flo
 
 def floor_of(column: Column) -> float:
     """Below this a stored number is rounding."""
-    return max(column.floor / column.scale, NOISE)
+    return max(column.floor / column.scale, FLOOR)
 
 
 def _mean(numbers: Mapping[Place, float], column: Column) -> float:

@@ -15,7 +15,7 @@ from itertools import combinations
 import numpy as np
 
 from rectbench.statistics.intervals import counted
-from rectbench.statistics.paired import NOISE
+from rectbench.statistics.paired import FLOOR
 from rectbench.statistics.ranking import LEAST_SIGNED_RANK_UNITS, NO_SIGNED_RANK, Unit
 
 EQUIVALENT = 0.02
@@ -50,7 +50,7 @@ def signed_rank(
     values: Mapping[str, Mapping[Unit, float]],
     *,
     equivalent: float = EQUIVALENT,
-    floor: float = NOISE,
+    floor: float = FLOOR,
     unit: str = "unit",
     seed: int = 0,
 ) -> tuple[Belief, ...]:

@@ -26,7 +26,7 @@ class Needs:
     units: int | None
     """None beyond a million."""
     levels: tuple[int | None, ...]
-    """How many of each level within a unit; None where no number is enough."""
+    """How many of each level within a unit; None where no number is enough on so few units."""
 
     @classmethod
     def of(cls, spread: Spread, difference: float, tests: int = 1) -> Needs:

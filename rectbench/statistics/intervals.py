@@ -19,6 +19,8 @@ from scipy.special import betaincinv, stdtrit
 from rectbench.errors import InvalidInput
 from rectbench.types import FloatArray
 
+ALPHA = 0.05
+"""So often may chance alone have its way: in every test, of every count, and beyond the ends of intervals."""
 LEAST_UNITS = 3
 """Fewer units carry no interval: with two it would be 9 times as wide as their distance."""
 LARGEST_LOG = math.log(sys.float_info.max)
@@ -49,7 +51,7 @@ class Interval:
         return "unbounded" if math.isnan(self.low) else ""
 
 
-def mean_interval(values: Iterable[float], level: float = 0.95) -> Interval:
+def mean_interval(values: Iterable[float], level: float = 1 - ALPHA) -> Interval:
     """Student's t interval of the mean over units; values that are NaN are left out.
 
     >>> found = mean_interval([1.0, 2.0, 3.0])
@@ -63,7 +65,7 @@ def mean_interval(values: Iterable[float], level: float = 0.95) -> Interval:
     return Interval(estimate, estimate - margin, estimate + margin, len(numbers))
 
 
-def geometric_interval(values: Iterable[float], level: float = 0.95) -> Interval:
+def geometric_interval(values: Iterable[float], level: float = 1 - ALPHA) -> Interval:
     """The t interval of logarithms: of the geometric mean of values above zero, or of ratios.
 
     Values that are NaN are left out. Raises InvalidInput for one that is not above zero.
@@ -78,7 +80,7 @@ def geometric_interval(values: Iterable[float], level: float = 0.95) -> Interval
     return Interval(ratio(logs.estimate), ratio(logs.low), ratio(logs.high), logs.units)
 
 
-def count_interval(successes: int, trials: int, level: float = 0.95) -> Interval:
+def count_interval(successes: int, trials: int, level: float = 1 - ALPHA) -> Interval:
     """The exact interval of a share (Clopper and Pearson, Biometrika 26, 1934), from 0 to 1.
 
     Raises InvalidInput where the successes are not among the trials.
@@ -118,7 +120,7 @@ def nested_means(labelled: Mapping[Label, float]) -> dict[Hashable, float]:
     return {key[0]: value for key, value in means.items()}
 
 
-def margins(values: FloatArray, level: float = 0.95) -> FloatArray:
+def margins(values: FloatArray, level: float = 1 - ALPHA) -> FloatArray:
     """Half the width of the t intervals of the means of [..., units]; NaN for fewer than `LEAST_UNITS`."""
     units = values.shape[-1]
     if units < LEAST_UNITS:
@@ -130,7 +132,7 @@ def margins(values: FloatArray, level: float = 0.95) -> FloatArray:
     return margins_of(spread, units, level)
 
 
-def margins_of(spread: T, units: int, level: float = 0.95) -> T:
+def margins_of(spread: T, units: int, level: float = 1 - ALPHA) -> T:
     """The same by the standard deviation of the units' values, a number or an array; two units at least."""
     return float(stdtrit(units - 1, (1 + level) / 2)) / math.sqrt(units) * spread
 

@@ -7,16 +7,21 @@ import math
 import numpy as np
 from scipy.special import stdtr
 
+from rectbench.statistics.intervals import ALPHA
 from rectbench.types import BoolArray, FloatArray
 
-NOISE = 1e-9
-"""Logarithms of values as near as this to each other are the same: the rest is rounding."""
+TIE = 1e-6
+"""Logarithms of values as near as this to each other are the same. What methods share in theory, such as the
+row error in source pixels under one pose, comes out 1e-9 to 1e-6 of itself apart, through iterated inverses
+and slopes over finite steps; and no millionth is a reason to prefer a method."""
+FLOOR = 1e-9
+"""Smaller values, in whatever unit they are stored, are zero with rounding: as good as each other."""
 
 
 def log_ratios(logs: FloatArray) -> FloatArray:
     """[..., methods, methods, units]: differences of logarithms [..., methods, units], without rounding."""
     ratios = logs[..., :, None, :] - logs[..., None, :, :]
-    settled: FloatArray = np.where(np.abs(ratios) <= NOISE, 0.0, ratios)
+    settled: FloatArray = np.where(np.abs(ratios) <= TIE, 0.0, ratios)
     return settled
 
 
@@ -26,7 +31,7 @@ def p_values(ratios: FloatArray) -> FloatArray:
     if units < 2:
         return np.ones(ratios.shape[:-1])
     means = np.mean(ratios, axis=-1)
-    errors = np.maximum(np.std(ratios, axis=-1, ddof=1), NOISE) / math.sqrt(units)
+    errors = np.maximum(np.std(ratios, axis=-1, ddof=1), TIE) / math.sqrt(units)
     p: FloatArray = np.minimum(2 * stdtr(units - 1, -np.abs(means) / errors), 1.0)
     return p
 
@@ -42,7 +47,7 @@ def holm(p: FloatArray) -> FloatArray:
     return corrected
 
 
-def better(logs: FloatArray, alpha: float = 0.05) -> BoolArray:
+def better(logs: FloatArray, alpha: float = ALPHA) -> BoolArray:
     """[..., methods, methods]: whether the first is told to be below the second, of [..., methods, units].
 
     At most a share `alpha` of all benches says so of any pair of methods of which it is false.

@@ -7,10 +7,10 @@ import math
 from scipy.optimize import brentq
 from scipy.special import gammaincinv, nctdtr, stdtrit
 
+from rectbench.statistics.intervals import ALPHA
+
 POWER = 0.8
 """A difference is resolved if it is told in this share of benches."""
-ALPHA = 0.05
-"""In this share of benches may any two methods be told apart that are alike."""
 
 
 def power(difference: float, spread: float, units: int, tests: int = 1, alpha: float = ALPHA) -> float:
@@ -48,7 +48,7 @@ def resolved(spread: float, units: int, tests: int = 1, wanted: float = POWER) -
     return float(root) * spread
 
 
-def variance_factors(units: int, level: float = 0.95) -> tuple[float, float]:
+def variance_factors(units: int, level: float = 1 - ALPHA) -> tuple[float, float]:
     """The ends of the interval of a variance that is known from so many units, as factors of the estimate.
 
     >>> low, high = variance_factors(10)

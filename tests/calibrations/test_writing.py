@@ -22,7 +22,6 @@ from rectbench.rigs import written_formats
 from tests.calibrations.calibration_files import R_RIGHT_LEFT, T_RIGHT_LEFT
 from tests.calibrations.examples import (
     AFFINE1,
-    EXAMPLES,
     FISHEYES,
     FOCAL1,
     POLY1,
@@ -31,7 +30,7 @@ from tests.calibrations.examples import (
     ocam_camera,
 )
 from tests.cameras.random_cameras import FOCAL, MODELS, any_camera, cameras
-from tests.conftest import Shell
+from tests.rigs_for_tests import assert_same_pose
 
 FORMATS = tuple(written_formats())
 RAYS = np.random.default_rng(3).normal(size=(400, 3)) * [1, 1, 0.7]
@@ -49,11 +48,6 @@ def assert_same_lens(read: Camera, written: Camera) -> None:
     assert np.mean(ok != expected_ok) <= 0.01
     both = ok & expected_ok & (np.abs(expected).max(axis=-1) < 5000)
     np.testing.assert_allclose(pixels[both], expected[both], rtol=0, atol=1e-9)
-
-
-def assert_same_pose(read: Rig, written: Rig) -> None:
-    np.testing.assert_allclose(read.R_right_left, written.R_right_left, atol=1e-14)
-    np.testing.assert_allclose(read.t_right_left, written.t_right_left, atol=1e-14)
 
 
 def rig_of(camera: Camera, right: Camera | None = None) -> Rig:
@@ -355,49 +349,3 @@ def test_a_file_where_a_folder_should_be_says_so(tmp_path: Path) -> None:
     with pytest.raises(InvalidInput, match="rig: cannot be written"):
         FISHEYES.save(tmp_path / "rig", "ros")
     assert (tmp_path / "rig").read_text() == "mine"
-
-
-def test_the_command_line_converts_and_names_the_files(tmp_path: Path, shell: Shell) -> None:
-    FISHEYES.save(tmp_path / "rig.yaml")
-    code, out, _ = shell("convert", tmp_path / "rig.yaml", "-o", tmp_path / "info", "--to", "ros")
-    assert code == 0
-    assert out.split() == [str(tmp_path / "info" / name) for name in ("left.yaml", "right.yaml")]
-    code, out, _ = shell("convert", *out.split(), "-o", tmp_path / "rig.json", "--to", "opencv")
-    assert code == 0
-    assert_same_pose(load_rig(tmp_path / "rig.json"), FISHEYES)
-
-
-def test_the_command_line_picks_cameras_and_limits_their_view(tmp_path: Path, shell: Shell) -> None:
-    FISHEYES.save(tmp_path / "chain.yaml", "kalibr")
-    options = ("--cameras", "cam1,cam0", "--max-angle-deg", "80")
-    code, _, _ = shell("convert", tmp_path / "chain.yaml", "-o", tmp_path / "out.yaml", *options)
-    assert code == 0
-    assert load_rig(tmp_path / "out.yaml").left == FISHEYES.within(80).right
-
-
-def test_the_command_line_takes_the_size_and_unit_that_a_file_lacks(tmp_path: Path, shell: Shell) -> None:
-    example = EXAMPLES["opencv-samples"]
-    for name, text in example.files.items():
-        (tmp_path / name).write_text(text)
-    files = [tmp_path / name for name in example.files]
-    code, _, err = shell("convert", *files, "-o", tmp_path / "out.yaml")
-    assert code == 2
-    assert "image_width is missing" in err
-    code, *_ = shell("convert", *files, "-o", tmp_path / "out.yaml", "--size", "848x800", "--unit", "mm")
-    assert code == 0
-    assert_same_pose(load_rig(tmp_path / "out.yaml"), example.rig)
-
-
-def test_the_command_line_says_what_cannot_be_written(tmp_path: Path, shell: Shell) -> None:
-    code, out, err = shell("convert", "t265", "-o", tmp_path / "model", "--to", "mrcal")
-    assert (code, out) == (2, "")
-    assert err.count("\n") == 1
-    assert "mrcal has no place for the left camera, kannala-brandt; expected one of" in err
-
-
-def test_the_list_of_formats_says_which_are_written(shell: Shell) -> None:
-    _, out, _ = shell("list", "formats")
-    lines = {line.split()[0]: line for line in out.splitlines() if line.strip()}
-    assert "read and written, as a folder" in lines["colmap"]
-    assert "written" in lines["kalibr"]
-    assert "written" not in lines["kitti360"]

@@ -247,10 +247,23 @@ def test_ties_are_ties() -> None:
     assert judge(alike, count()).tests[0].rigs_held == 0
 
 
+NONE, ONES = np.full((4, 1), math.nan), np.ones((4, 1))
+
+
 def test_a_rival_that_does_not_show_that_much_is_not_less_and_one_that_alone_does_is() -> None:
-    none = np.full((4, 1), math.nan)
-    assert judge(rows("ours", np.ones((4, 1))) + rows("theirs", none), count()).tests[0].rigs_held == 4
-    assert judge(rows("ours", none) + rows("theirs", np.ones((4, 1))), count()).tests[0].rigs_held == 0
+    two = count(rivals=("theirs", "others"))
+    table = rows("ours", ONES) + rows("theirs", NONE) + rows("others", 2 * ONES)
+    assert judge(table, two).tests[0].rigs_held == 4
+    assert judge(rows("ours", NONE) + rows("theirs", ONES), count()).tests[0].rigs_held == 0
+
+
+def test_a_rig_on_which_no_rival_has_a_number_is_no_win() -> None:
+    nowhere = judge(rows("ours", ONES) + rows("theirs", NONE), count()).tests[0]
+    assert (nowhere.verdict, nowhere.rigs_held) == ("undecided", 0)
+    assert nowhere.absent == ("rig0", "rig1", "rig2", "rig3")
+    theirs = [[2.0], [2.0], [math.nan], [0.5]]
+    some = judge(rows("ours", ONES) + rows("theirs", theirs), count()).tests[0]
+    assert (some.rigs_held, some.interval.units, some.absent) == (2, 3, ("rig2",))
 
 
 def test_what_is_without_bound_is_never_the_least() -> None:

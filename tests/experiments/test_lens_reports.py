@@ -221,7 +221,7 @@ def parts(tmp_path_factory: pytest.TempPathFactory) -> rb.Report:
 def test_nothing_is_rendered_for_them_and_the_rows_say_there_is_no_scene(
     parts: rb.Report, store: Store, tmp_path: Path
 ) -> None:
-    table = run(parts, tmp_path / "run", scenes=["none"], jobs=2)
+    table = run(parts, tmp_path / "run", Selection(scenes=["none"]), jobs=2)
     assert (table["status"] == "ok").all()
     assert (table["scene"] == "none").all()
     assert {path.name for path in store.root.iterdir()} == {"cells"}
@@ -236,9 +236,13 @@ def test_the_rows_are_the_same_for_any_selection_and_number_of_jobs(parts: rb.Re
     assert (whole["status"] == "ok").all()
     identity = [*whole.columns[:9]]
     for number, chosen in enumerate(
-        ({"seeds": [1]}, {"rigs": ["sony-as200v"], "scenes": ["none"]}, {"methods": ["hartley"]})
+        (
+            Selection(seeds=[1]),
+            Selection(rigs=["sony-as200v"], scenes=["none"]),
+            Selection(methods=["hartley"]),
+        )
     ):
-        some = run(parts, tmp_path / f"some{number}", jobs=1, fresh=True, **chosen)  # type: ignore[arg-type]
+        some = run(parts, tmp_path / f"some{number}", chosen, jobs=1, fresh=True)
         assert 0 < len(some) < len(whole)
         expected = some[identity].merge(whole, on=identity, how="left")
         pd.testing.assert_frame_equal(some, expected[some.columns], check_exact=True)

@@ -15,6 +15,7 @@ from scipy.spatial.transform import Rotation
 
 import rectbench as rb
 from rectbench.experiments.planning import make_plan
+from rectbench.experiments.selecting import Selection
 from rectbench.experiments.tasks import CellTask
 from rectbench.reporting.report import write_report
 from rectbench.runs.gating import accept, gate
@@ -141,7 +142,7 @@ def test_it_resumes_and_an_edited_image_runs_anew(
     folder: Path, run_dir: Path, table: pd.DataFrame, tmp_path: Path
 ) -> None:
     measured = "row_error_board_mean_px"
-    again = run(REPORT, tmp_path / "again", data=folder, jobs=1, scenes=["room"], rigs=["true"])
+    again = run(REPORT, tmp_path / "again", Selection(scenes=["room"], rigs=["true"]), data=folder, jobs=1)
     assert (
         again[measured].tolist() == table[(table.scene == "room") & (table.rig == "true")][measured].tolist()
     )
@@ -152,11 +153,9 @@ def test_it_resumes_and_an_edited_image_runs_anew(
         moved = run(
             REPORT,
             tmp_path / "moved",
+            Selection(scenes=["room"], rigs=["true"], methods=["abraham"]),
             data=folder,
             jobs=1,
-            scenes=["room"],
-            rigs=["true"],
-            methods=["abraham"],
         )
     finally:
         image.write_bytes(kept)

@@ -108,11 +108,25 @@ def test_a_method_that_shows_less_of_the_view_stands_below_by_what_it_keeps(writ
     assert any("less than 95 % of the view" in note and "conventional" in note for note in table.notes)
 
 
-def test_a_method_that_fails_on_a_rig_has_no_rank(write_run: WriteRun) -> None:
-    rows = rows_of({"abraham": around(0.3), "local-homography": around(0.2)})
+def test_a_method_that_fails_on_a_rig_where_two_do_not_has_no_rank(write_run: WriteRun) -> None:
+    values = {"hartley": around(0.9), "abraham": around(0.3), "local-homography": around(0.2)}
+    rows = rows_of(values)
     rows[-1] = failed_row("street", "rig-5", "exact", "local-homography")
     ranks = column(only_table(read_run(write_run(rows))), "rank")
-    assert ranks == {"abraham": "1", "local-homography": "–"}
+    assert ranks == {"abraham": "1", "hartley": "2", "local-homography": "–"}
+
+
+def test_a_rig_that_one_method_alone_serves_makes_it_no_first(write_run: WriteRun) -> None:
+    values = {"abraham": around(0.3), "local-homography": around(0.2), "hartley": around(0.9)}
+    rows = [*rows_of(values), *rows_of({"hartley": {"rig-6": 0.9}})]
+    rows += [failed_row("street", "rig-6", "exact", name) for name in ("abraham", "local-homography")]
+    table = only_table(read_run(write_run(rows)))
+    assert list(column(table, "rank").items()) == [
+        ("local-homography", "1–2"),
+        ("abraham", "2–3"),
+        ("hartley", "1–3"),
+    ]
+    assert table.caption.startswith("These 6 of 7 rigs, which all ranked methods serve, tell")
 
 
 def test_a_run_that_measures_no_distortion_is_not_said_to_be_ranked(write_run: WriteRun) -> None:

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import rectbench as rb
-from rectbench.cli.printing.design import percent
+from rectbench.cli.printing.design import percents
 from rectbench.plugins.catalogue import known
 from rectbench.runs.designing import design
 from rectbench.runs.run import read_run
@@ -97,6 +97,56 @@ def test_pairs_without_a_scene_need_none(
     assert "or scenes" not in out
 
 
+@pytest.mark.parametrize("matches", ["", "true + 0.1 px"])
+def test_seeds_are_spoken_of_where_they_draw_something(planned: Path, shell: Shell, matches: str) -> None:
+    one_seed = [row | {"matches": matches} for row in rows() if row["seed"] == 0]
+    save_run(planned, one_seed)
+    table = rb.plan("quick").table
+    assert (table["seeds"] == (1 if matches else 0)).all()
+    assert ("seed" in shell("plan", "quick")[1]) == bool(matches)
+    save_run(planned, [row | {"pose": "perturbed"} for row in one_seed])
+    assert "One seed each: what more seeds would do is unknown." in shell("plan", "quick")[1]
+
+
+def test_what_is_told_already_needs_nothing_more(planned: Path, shell: Shell) -> None:
+    out = shell("plan", "quick", "--detect", "100%")[1]
+    assert "This run tells 100 % between any two of them already." in out
+    assert "More" not in out
+    assert "rigs only" not in out
+
+
+def test_what_seeds_cannot_tell_rigs_can(planned: Path, shell: Shell) -> None:
+    out = shell("plan", "quick")[1]
+    assert "rigs only" in out
+    assert "Rigs only: on as many rigs as these no number of scenes or seeds tells 2 %." in out
+    assert "no number is" not in out
+
+
+def test_scenes_that_differ_are_worth_more_of_them(planned: Path, shell: Shell) -> None:
+    uneven = [row | {RANKING: row[RANKING] * _uneven(row)} for row in rows()]
+    save_run(planned, uneven)
+    out = shell("plan", "quick")[1]
+    assert "of the variance between rigs: more would help" in out
+    assert "would help" not in shell("plan", "quick", "--detect", "5000%")[1]
+
+
+def _uneven(row: dict[str, Any]) -> float:
+    """Abraham's luck with each scene of each rig."""
+    luck = {"street": 1.7, "room": 0.7} if int(row["rig"][-1]) % 2 else {"street": 0.7, "room": 1.7}
+    return luck[row["scene"]] if row["method"] == "abraham" else 1.0
+
+
+def test_the_list_of_metrics_has_what_a_plan_can_be_made_for(shell: Shell) -> None:
+    out = shell("list", "metrics")[1]
+    assert all(key in out for key in (RANKING, "row_error_mean_px", "reconstruction_density"))
+
+
+def test_no_difference_has_no_sign() -> None:
+    assert percents(1 - 1e-12, 1.0, 1 + 1e-9) == ("0.0 %", "0.0 %", "0.0 %")
+    assert percents(1 - 2e-4) == ("-0.02 %",)
+    assert percents(0.9, 3.0) == ("× 0.9", "× 3")
+
+
 def test_the_verb_says_where_there_are_too_few_rigs(
     tmp_path: Path, shell: Shell, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -169,10 +219,10 @@ def test_the_verb_prints_what_python_gives(planned: Path, shell: Shell) -> None:
     found = rb.plan("quick", detect=0.05)
     assert found.detect == 0.05
     for row in found.table.to_dict("records"):
-        assert f"{percent(row['ratio'])} " in out
+        assert f" {percents(row['ratio'])[0]} " in out
         assert f" {row['rigs_needed']} " in out
     assert "rigs for 5 %" in out
-    assert "More scenes than 2 would hardly help" in out
+    assert "More scenes would hardly help" in out
     assert rb.plan("quick", detect="5%", run=planned).table.equals(found.table)
 
 
@@ -186,6 +236,15 @@ def test_the_verb_prints_what_python_gives(planned: Path, shell: Shell) -> None:
         ("plan quik", "unknown report 'quik'; did you mean quick"),
         ("plan paper --run runs/quick", "runs/quick is a run of quick; expected one of paper"),
         ("plan quick --metric rows", "unknown metric 'rows'"),
+        ("plan quick --metric row_eror_mean_px", "did you mean row_error_mean_px"),
+        (
+            "plan quick --metric row_error",
+            "metric is row_error, of several numbers; expected one of row_error_",
+        ),
+        (
+            "plan quick --metric depth_error_p95",
+            "runs/quick has no depth_error_p95, which its report does not",
+        ),
         ("plan quick --detect 0", "detect is '0'; expected a percentage above 0 such as 2%"),
         ("plan quick --detect -2%", "detect is '-2%'; expected a percentage above 0"),
         ("plan quick --detect 2", "detect is '2'; expected a percentage above 0"),

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from itertools import combinations
 
 import numpy as np
@@ -99,7 +100,7 @@ def test_identical_values_are_a_tie() -> None:
     assert rank({"a": same, "b": dict(same)}).resolves == 1.0
 
 
-@pytest.mark.parametrize("noise", [1e-10, 9e-10])
+@pytest.mark.parametrize("noise", [1e-9, 9e-7])
 def test_rounding_tells_no_methods_apart(noise: float) -> None:
     same = {unit: 0.1 + unit for unit in range(12)}
     rounded = {unit: value * (1 + noise) for unit, value in same.items()}
@@ -157,6 +158,84 @@ def test_where_each_method_lacks_a_unit_none_is_ranked() -> None:
     assert (ranking.ranks, ranking.reason) == ({}, "no method has a number on each rig")
 
 
-def test_a_method_alone_is_first() -> None:
-    ranking = rank({"a": {0: 1.0, 1: 2.0, 2: 3.0}})
-    assert (ranking.ranks, ranking.resolves, ranking.reason) == ({"a": (1, 1)}, None, "")
+def test_a_method_alone_has_no_rank() -> None:
+    ranking = rank({"a": {0: 1.0, 1: 2.0, 2: 3.0}}, unit="rig")
+    assert (ranking.order, ranking.ranks, ranking.resolves) == (("a",), {}, None)
+    assert ranking.reason == "a alone has a number on each rig: none to compare it with"
+
+
+EASY, HARD = tuple(range(11)), 11
+"""Units that all serve, and one that not all do."""
+
+
+def level(height: float, units: Iterable[int] = (*EASY, HARD)) -> dict[int, float]:
+    """A method's values, uneven by 1 % or so."""
+    return {u: height * (1 + 0.01 * math.sin(7 * u + height)) for u in units}
+
+
+@pytest.mark.parametrize("rivals", [2, 3, 5])
+def test_a_method_that_alone_serves_a_unit_is_not_first_for_that(rivals: int) -> None:
+    others = {f"good{i}": level(1 + i, EASY) for i in range(rivals)}
+    ranking = rank({"bad": level(99), **others})
+    assert ranking.order == (*others, "bad")
+    assert ranking.ranks["good0"][0] == 1
+    assert (ranking.units, ranking.of, ranking.behind) == (11, 12, ())
+    assert ranking.ranks["bad"] == (1, rivals + 1)  # who fails where it does not is not told to be better
+
+
+def test_the_others_are_told_apart_as_if_the_unit_that_one_alone_serves_were_none() -> None:
+    others = {"a": level(1, EASY), "b": level(2, EASY)}
+    assert rank({"a": others["a"], "b": others["b"], "odd": {HARD: 0.01}}).ranks == rank(others).ranks
+    odd = {"odd": {HARD: 0.01}, "odder": {HARD: 0.02}}
+    assert rank({**odd, **others}).ranks == rank(others).ranks == {"a": (1, 1), "b": (2, 2)}
+
+
+@pytest.mark.parametrize("height", [0.01, 1.5, 100.0])
+def test_no_method_wins_by_failing_on_the_hardest_unit(height: float) -> None:
+    others = {"a": level(1.0), "b": level(2.0)}
+    fails = rank({**others, "c": level(height, EASY)})
+    assert fails.behind == ("c",)
+    assert fails.order == ("a", "b", "c")
+    assert fails.ranks == {"a": (1, 1), "b": (2, 2)}
+
+
+@pytest.mark.parametrize("height", [0.5, 2.0])
+def test_of_two_methods_neither_is_ranked_where_one_fails_on_a_unit(height: float) -> None:
+    two = rank({"a": level(1.0), "b": level(height, EASY)})
+    assert (two.order, two.behind, two.ranks) == (("a", "b"), ("b",), {})
+    assert two.reason == "a alone has a number on each unit: none to compare it with"
+
+
+def test_who_fails_on_a_unit_that_is_left_out_is_not_told_to_be_better_than_who_does_not() -> None:
+    ranking = rank({"a": level(2.0), "b": level(1.0, EASY), "c": level(3.0, EASY)})
+    assert ranking.order == ("b", "a", "c")
+    assert ranking.ranks == {"b": (1, 2), "a": (1, 2), "c": (3, 3)}
+
+
+def test_a_method_that_serves_few_units_is_ranked_with_none() -> None:
+    few = rank({"wide": level(1.0), "narrow": level(0.1, EASY[:4])}, unit="rig")
+    assert (few.order, few.behind, few.ranks) == (("wide", "narrow"), ("narrow",), {})
+    assert few.reason == "wide alone has a number on each rig: none to compare it with"
+    several = {"narrow": level(0.1, EASY[:4]), "narrower": level(0.2, EASY[:4])}
+    assert rank({"wide": level(1.0), **several}).ranks == {}
+
+
+def test_methods_on_disjoint_units_are_not_compared() -> None:
+    apart = rank({"a": level(1.0, EASY[:5]), "b": level(2.0, EASY[5:])}, unit="rig")
+    assert (apart.ranks, apart.behind) == ({}, ("b", "a"))
+    assert apart.reason == "no method has a number on each rig"
+
+
+def test_methods_that_each_fail_on_another_unit_are_treated_alike() -> None:
+    both = {"b": level(2.0, (*EASY[1:], HARD)), "c": level(3.0, (EASY[0], *EASY[2:], HARD))}
+    fails = rank({"a": level(1.0), "d": level(4.0), **both})
+    assert (fails.units, set(fails.behind)) == (12, {"b", "c"})
+    assert fails.ranks == {"a": (1, 1), "d": (2, 2)}
+
+
+def test_of_units_that_few_serve_no_two_methods_are_favoured() -> None:
+    pairs = {"a": (*EASY, 11), "b": (*EASY, 11), "c": (*EASY, 12), "d": (*EASY, 12), "e": EASY}
+    ranking = rank({name: level(1.0 + i, units) for i, (name, units) in enumerate(pairs.items())})
+    assert (ranking.units, ranking.of, ranking.behind) == (11, 13, ())
+    assert ranking.ranks["e"] == (5, 5)
+    assert ranking.ranks["a"][0] == 1

@@ -82,7 +82,9 @@ class PlanRequest(Request):
     report: Any = positional("REPORT", "A report's name, or the path of its file.")
     detect: Any = word("The difference that is to be told.", default="2%", metavar="PERCENT", parse=share_in)
     """A share, once it is checked."""
-    metric: str | None = word("The column that is compared; by default the one that methods are ranked by.")
+    metric: str | None = word(
+        "The column that is compared, one of `rectbench list metrics`; by default the one that ranks methods."
+    )
     run: Path | None = word("The folder of a run of the report; runs/REPORT by default.", metavar="FOLDER")
 
 

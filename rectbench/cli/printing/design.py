@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterator, Mapping
+from collections.abc import Hashable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import pandas as pd
@@ -11,6 +11,7 @@ from rich.text import Text
 from rectbench.cli.printing.screen import console, plain_table
 from rectbench.runs.designing import NESTED
 from rectbench.statistics.intervals import counted
+from rectbench.statistics.paired import TIE
 from rectbench.statistics.power import variance_factors
 
 if TYPE_CHECKING:
@@ -18,6 +19,11 @@ if TYPE_CHECKING:
 
 SMALL_SHARE = 0.05
 """A level that makes less of the variance between rigs is not worth more of it."""
+RIGS_ONLY = "rigs only"
+_LEAST, _MOST = 0.5, 2.0
+"""Ratios between them are told in percent."""
+_ONE_DECIMAL, _WHOLE_PERCENT = 0.05, 0.01
+"""The least change (percent) and share that are shown with as many digits as others."""
 
 
 def show_design(found: Design) -> None:
@@ -26,34 +32,52 @@ def show_design(found: Design) -> None:
     for (part, pose), rows in found.table.groupby(["part", "pose"], sort=False):
         name = f"{part}: " if part else ""
         screen.print(Text(f"{name}{found.column.full_heading}, {pose} pose", style="bold"), soft_wrap=True)
-        told = rows[rows["reason"] == ""]
-        levels = [level for level in NESTED if (told[f"{level}s"] > 1).any()]
+        planned = rows[rows["reason"] == ""]
+        levels = [level for level in NESTED if (planned[f"{level}s"] > 1).any()]
         headings = [f"or {level}s" for level in levels]
         table = plain_table(
-            "A",
-            "B",
-            "rigs",
-            "A / B",
-            "95 % interval",
-            "told from",
-            f"rigs for {100 * found.detect:.3g} %",
-            *headings,
+            *(
+                "A",
+                "B",
+                "rigs",
+                "A / B",
+                "95 % interval",
+                "told from",
+                f"rigs for {_wanted(found.detect)}",
+                *headings,
+            )
         )
         for row in rows.to_dict("records"):
             table.add_row(row["a"], row["b"], str(row["rigs"]), *_entries(row, levels))
         screen.print(table)
-        for line in _remarks(told, len(rows)):
-            screen.print(Text(line), soft_wrap=True)
+        if not planned.empty:
+            for line in _remarks(planned, len(rows), found.detect, levels):
+                screen.print(Text(line), soft_wrap=True)
         screen.print()
 
 
-def percent(ratio: float) -> str:
-    """How far a ratio is from 1; the ratio itself where it is far.
+def _wanted(detect: float) -> str:
+    return f"{100 * detect:.3g} %"
 
-    >>> percent(0.9), percent(1.021), percent(123.4)
-    ('-10.0 %', '+2.1 %', '× 123')
+
+def percents(*ratios: float) -> tuple[str, ...]:
+    """How far ratios are from 1; the ratios themselves where one of them is far.
+
+    >>> percents(0.9, 1.021), percents(0.9996), percents(1.0 - 1e-9)
+    (('-10.0 %', '+2.1 %'), ('-0.04 %',), ('0.0 %',))
+    >>> percents(0.9, 123.4)
+    ('× 0.9', '× 123')
     """
-    return f"{100 * (ratio - 1):+.1f} %" if 0.5 <= ratio <= 2 else f"× {ratio:.3g}"
+    if not all(_LEAST <= ratio <= _MOST for ratio in ratios):
+        return tuple(f"× {ratio:.3g}" for ratio in ratios)
+    return tuple(map(_percent, ratios))
+
+
+def _percent(ratio: float) -> str:
+    change = 100 * (ratio - 1)
+    if abs(change) <= 100 * TIE:
+        return "0.0 %"
+    return f"{change:+.1f} %" if abs(change) >= _ONE_DECIMAL else f"{change:+.1g} %"
 
 
 def _entries(row: Mapping[Hashable, Any], levels: list[str]) -> Iterator[str]:
@@ -61,43 +85,53 @@ def _entries(row: Mapping[Hashable, Any], levels: list[str]) -> Iterator[str]:
     if row["reason"]:
         yield row["reason"]
         return
-    yield percent(row["ratio"])
-    yield f"{percent(row['low'])} to {percent(row['high'])}"
-    yield percent(row["resolves"]).lstrip("+")
-    yield _number(row["rigs_needed"], "over a million")
+    ratio, low, high = percents(row["ratio"], row["low"], row["high"])
+    yield ratio
+    yield f"{low} to {high}"
+    yield percents(row["resolves"])[0].lstrip("+")
+    yield "over a million" if pd.isna(row["rigs_needed"]) else str(row["rigs_needed"])
     for level in levels:
-        yield _number(row[f"{level}s_needed"], "no number")
+        needed, count = row[f"{level}s_needed"], row[f"{level}s"]
+        yield str(needed) if not pd.isna(needed) else RIGS_ONLY if count else ""
 
 
-def _number(count: Any, otherwise: str) -> str:
-    return otherwise if pd.isna(count) else str(count)
-
-
-def _remarks(told: pd.DataFrame, tests: int) -> Iterator[str]:
+def _remarks(planned: pd.DataFrame, tests: int, detect: float, levels: Sequence[str]) -> Iterator[str]:
     """What the numbers are, how sure they are, and what each level within a rig is worth."""
-    if told.empty:
-        return
+    wanted = _wanted(detect)
     yield (
-        "Told: in four benches of five, by paired t tests of log ratios over rigs, at 5 % for "
-        f"{counted(tests, 'pair')} of methods together (Holm)."
+        "Told from: what four benches of five like this one tell, by paired t tests of log ratios over rigs, "
+        f"at 5 % for {counted(tests, 'pair')} of methods together (Holm)."
     )
-    rigs = int(told["rigs"].min())
+    rigs = int(planned["rigs"].min())
     low, high = variance_factors(rigs)
-    yield f"How rigs differ is known from {rigs} of them: it may take {low:.2g} to {high:.2g} times as many."
+    yield (
+        f"How rigs differ is known from {rigs} of them: in truth {low:.2g} to {high:.2g} times as many rigs "
+        "may be needed."
+    )
+    if not planned["scenes"].any():
+        yield "No scene is in these pairs: what is compared is a property of rig and motion."
+    open_still = planned[planned["resolves"] > 1 + detect]
+    if open_still.empty:
+        yield f"This run tells {wanted} between any two of them already."
+    if levels and open_still[[f"{level}s_needed" for level in levels]].isna().any(axis=None):
+        more = " or ".join(f"{level}s" for level in levels)
+        yield f"{RIGS_ONLY.capitalize()}: on as many rigs as these no number of {more} tells {wanted}."
     for level in NESTED:
-        if level == "scene" and not told["scenes"].any():
-            yield "No scene is in these pairs: what is compared is a property of rig and motion."
-            continue
-        count, share = int(told[f"{level}s"].median()), told[f"{level}s_share"].max()
-        part = f"{_part(share)} of the variance between rigs"
-        if pd.isna(share):
-            if level != "motion":  # reports state their motions, and are about these
-                yield f"One {level} each: what more {level}s would do is unknown."
-        elif share < SMALL_SHARE:
-            yield f"More {level}s than {count} would hardly help: they make {part}."
-        else:
-            yield f"The {count} {level}s make up to {part}: more would help."
+        yield from _worth(level, open_still[open_still[f"{level}s"] > 0])
 
 
-def _part(share: float) -> str:
-    return f"{100 * share:.0f} %" if share >= 0.01 else "less than 1 %"
+def _worth(level: str, rows: pd.DataFrame) -> Iterator[str]:
+    """What more scenes or seeds would do for differences that are not told yet; of motions, likewise."""
+    share = rows[f"{level}s_share"].max()
+    if rows.empty:
+        return
+    if pd.isna(share):
+        if level != "motion":  # reports state their motions, and are about these
+            yield f"One {level} each: what more {level}s would do is unknown."
+        return
+    part = f"{100 * share:.0f} %" if share >= _WHOLE_PERCENT else "less than 1 %"
+    if share < SMALL_SHARE:
+        yield f"More {level}s would hardly help: they make {part} of the variance between rigs."
+        return
+    alone = "" if rows[f"{level}s_needed"].notna().any() else ", but only more rigs tell so little"
+    yield f"{level.capitalize()}s make up to {part} of the variance between rigs: more would help{alone}."

@@ -21,6 +21,8 @@ def show_names(kind: str, verbose: bool) -> None:
     screen, table, found = console(), plain_table(kind), listed(kind)
     for entry in found.entries:
         table.add_row(entry.name, entry.summary)
+        if entry.columns:
+            table.add_row("", ", ".join(entry.columns), style="dim")
         if verbose and hasattr(entry.value, "Options"):
             _add_options(table, entry.value)
     screen.print(table)

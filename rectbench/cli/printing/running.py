@@ -12,15 +12,15 @@ from rich.table import Table
 from rich.text import Text
 
 from rectbench.cli.printing.screen import console, plain_table
+from rectbench.metrics.view import across_key
 from rectbench.reporting.tables.main_tables import INTERVAL, main_tables
 from rectbench.reporting.tables.numbers import shown, signed
 from rectbench.runs.run import read_run
 from rectbench.runs.units import GEOMETRIC
+from rectbench.scored import SHARES
 from rectbench.statistics.intervals import Interval
 
 if TYPE_CHECKING:
-    import pandas as pd
-
     from rectbench.plugins.metric import Column
     from rectbench.reporting.tables.table import Table as Summary
     from rectbench.runs.comparing import Comparison
@@ -95,7 +95,8 @@ SHOWN_DIFFERENCES = 40
 def show_comparison(comparison: Comparison, metrics: Collection[str]) -> None:
     """The paired differences, a table a part and pose: of these metrics; without any, of what moved."""
     screen, table = console(), comparison.table
-    chosen = table["metric"].isin(metrics) if metrics else table["moved"].gt(0) & ~_is_of_rig(table["metric"])
+    names = table["metric"]
+    chosen = names.isin(metrics) if metrics else table["moved"].gt(0) & ~names.isin(OF_RIGS)
     for (part, pose), rows in table[chosen].groupby(["part", "pose"], sort=False):
         title = f"{part}: {pose} pose" if part else f"{pose} pose"
         screen.print(Text(title, style="bold"))
@@ -115,9 +116,8 @@ def show_comparison(comparison: Comparison, metrics: Collection[str]) -> None:
         screen.print(f"... and {len(comparison.unpaired) - SHOWN_DIFFERENCES} more cells in one run alone")
 
 
-def _is_of_rig(metrics: pd.Series[str]) -> pd.Series[bool]:
-    """Angles of view say what a rig has, and nothing about methods."""
-    return metrics.str.fullmatch(r"view_\d+_deg")
+OF_RIGS = frozenset(map(across_key, SHARES))
+"""Angles of view say what a rig has, and nothing about methods."""
 
 
 def _compared(row: Mapping[Hashable, Any], column: Column) -> Iterator[str]:

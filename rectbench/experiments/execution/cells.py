@@ -10,12 +10,13 @@ from rectbench.experiments.execution.outcomes import LASTING, Outcome, outcome_o
 from rectbench.experiments.tasks import CellTask
 from rectbench.metrics.scoring import digests_of, needs_of, score
 from rectbench.metrics.timing import timed
+from rectbench.metrics.view import PROJECTION
 from rectbench.pairs.opening import open_pair
 from rectbench.pairs.pair import Pair
 from rectbench.pairs.rendered import RenderedPair
 from rectbench.pairs.rendering import Studio, give_memory_back
 from rectbench.pairs.spec import ESTIMATED, PairSpec, RenderedSpec
-from rectbench.plugins.fitting import check_result, checked_options
+from rectbench.plugins.fitting import checked_options, checked_result
 from rectbench.plugins.matches import FROM_IMAGES, true_noise_px
 from rectbench.plugins.metric import Case
 from rectbench.plugins.rectifier import METHODS, Problem, pose_problem
@@ -137,8 +138,8 @@ def _measured(task: CellTask, pair: Pair) -> Outcome:
     def fit() -> Rectification:
         return method.value.fit(problem, options)
 
-    rectification, first_fit_s = timed(fit)
-    check_result(method.name, rectification, problem)
+    made, first_fit_s = timed(fit)
+    rectification = checked_result(method.name, made, problem)
     case = Case(
         rectification,
         pair,
@@ -149,4 +150,5 @@ def _measured(task: CellTask, pair: Pair) -> Outcome:
     )
     check_agreement(rectification, case.delivered)
     columns = score(case, task.metrics)
-    return Outcome(metrics=columns, notes={**rectification.notes, **case.remarks})
+    stated = {name: note for name, note in rectification.notes.items() if name != PROJECTION}
+    return Outcome(metrics=columns, notes={**stated, **case.remarks})

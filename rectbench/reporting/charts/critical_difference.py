@@ -15,7 +15,8 @@ from rectbench.plugins.result import Part, distinct
 from rectbench.reporting.style import FAINT, INK, LOST, PAGE_INCHES, PAPER
 from rectbench.runs.units import by_rig, floor_of
 from rectbench.statistics.bayes import BEYOND, EQUIVALENT, Belief, signed_rank
-from rectbench.statistics.paired import NOISE
+from rectbench.statistics.intervals import ALPHA
+from rectbench.statistics.paired import TIE
 from rectbench.statistics.ranking import rank
 
 if TYPE_CHECKING:
@@ -31,7 +32,6 @@ LEAST_METHODS = 3
 """Of two methods a signed-rank test tells all that their ranks do."""
 MOST_PAIRS = 28
 """Of more pairs of methods only neighbours in the ranking are shown."""
-ALPHA = 0.05
 ROW_INCHES, ABOVE = 0.165, 3.0
 """Of a label in height, and how many of them stand above the axis of ranks."""
 LEAST_LABELLED = 0.06
@@ -113,7 +113,7 @@ def mean_ranks(data: Decided) -> tuple[dict[str, float], pd.DataFrame, float]:
     from scipy.stats import friedmanchisquare, studentized_range
 
     logs = np.log(np.maximum([list(numbers.values()) for numbers in data.values.values()], data.floor))
-    settled = np.round(np.minimum(logs, BEYOND) / NOISE)  # rounding is a tie
+    settled = np.round(np.minimum(logs, BEYOND) / TIE)  # rounding is a tie
     table = pd.DataFrame(settled.T, columns=list(data.values))
     methods, rigs = len(table.columns), len(table)
     p = posthoc_nemenyi_friedman(table)

@@ -52,7 +52,7 @@ def standing(summaries: Sequence[Summary], results: Sequence[Result], catalogue:
     values = by_rig(results, column)
     found = rank(values, floor=floor_of(column), unit="rig")
     rigs = {rig for numbers in values.values() for rig in numbers}
-    behind = {method for method, numbers in values.items() if not rigs or len(numbers) < len(rigs)}
+    behind = set(found.behind)
 
     def nearness(summary: Summary) -> tuple[bool, int, int, float, str]:
         method = summary.method
@@ -83,8 +83,9 @@ def _design_text(found: Ranking) -> str:
         return f"{found.reason[0].upper()}{found.reason[1:]}."
     if found.resolves is None:
         return ""
+    left_out = f" of {found.of} rigs, which all ranked methods serve," * (found.units < found.of) or " rigs"
     return (
-        f"These {found.units} rigs tell two methods apart, in four cases of five, from "
+        f"These {found.units}{left_out} tell two methods apart, in four cases of five, from "
         f"{_ratio_text(found.resolves)} on; a rank is an interval where they tell no more."
     )
 
