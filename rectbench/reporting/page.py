@@ -13,7 +13,7 @@ from rectbench.reporting.asked import methods_part, part_title
 from rectbench.reporting.figures import EXTENSIONS, Drawn
 from rectbench.reporting.names import slug
 from rectbench.reporting.style import looks
-from rectbench.reporting.tables.findings import perspective_limit
+from rectbench.reporting.tables.findings import findings
 from rectbench.reporting.tables.table import SPELLINGS, Entry, Table
 from rectbench.reporting.tables.tabulation import ALL_MOTIONS, ALL_RIGS
 from rectbench.runs.record import RunRecord
@@ -74,8 +74,8 @@ class Part:
     anchor: str
     title: str
     topics: list[Topic]
-    finding: str
-    """See `perspective_limit`; empty where another part, of more rigs, tells it better."""
+    findings: tuple[str, ...]
+    """What it tells, a sentence each."""
 
 
 def render_page(run: Run, tables: Sequence[Table], drawn: Sequence[Drawn]) -> str:
@@ -96,22 +96,14 @@ def render_page(run: Run, tables: Sequence[Table], drawn: Sequence[Drawn]) -> st
     }
     shown = {part.group: methods_part(part) for part in run.parts}
     methods = distinct(m for part in shown.values() if part for m in part.methods)
-    widest = max(filter(None, shown.values()), key=lambda part: len(part.rigs), default=None)
+    found = findings(run)
     return environment.get_template("index.html.j2").render(
         run=run,
         record=run.record,
         methods=methods,
         of_kind={table.kind: table for table in tables},
         scenes=[scene for scene in run.scenes if scene != NO_SCENE],
-        parts=[
-            _part(
-                part,
-                tables,
-                drawn,
-                perspective_limit(widest) if widest and part.group == widest.group else "",
-            )
-            for part in run.parts
-        ],
+        parts=[_part(part, tables, drawn, found.get(part.group, ())) for part in run.parts],
         tables=tables,
         colours={method: look.colour for method, look in looks(run.methods).items()},
         facts=_facts(run.record),
@@ -120,7 +112,7 @@ def render_page(run: Run, tables: Sequence[Table], drawn: Sequence[Drawn]) -> st
     )
 
 
-def _part(part: Run, tables: Sequence[Table], drawn: Sequence[Drawn], finding: str) -> Part:
+def _part(part: Run, tables: Sequence[Table], drawn: Sequence[Drawn], told: tuple[str, ...]) -> Part:
     anchor = slug("part", part.group) if part.group else ""
     heading_of = {slug(topic): topic for topic in part.catalogue.topics} | _TABLES
     mine = [table for table in tables if table.part == part.group and table.kind in heading_of]
@@ -135,7 +127,7 @@ def _part(part: Run, tables: Sequence[Table], drawn: Sequence[Drawn], finding: s
         )
     between = sorted(found.keys() - {*FIRST, *LAST})
     topics = [found[heading] for heading in (*FIRST, *between, *LAST) if heading in found]
-    return Part(part.group, anchor, part_title(part), topics, finding)
+    return Part(part.group, anchor, part_title(part), topics, told)
 
 
 def _sort_value(entry: Entry) -> str:

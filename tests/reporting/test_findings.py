@@ -67,8 +67,7 @@ def test_what_reads_the_same_is_no_reversal() -> None:
 
 def test_the_crossing_of_two_curves_is_the_limit(write_run: WriteRun) -> None:
     assert limit(write_run, crossing_at(64.0, "a")) == (
-        "A perspective image has less log distortion than any other method in views of up to 96° across, "
-        "abraham having less in wider ones."
+        "On a a perspective image has the least log distortion up to 96° across, abraham beyond."
     )
 
 
@@ -80,26 +79,29 @@ def test_the_crossing_is_found_between_the_measured_shares(write_run: WriteRun) 
 
 def test_limits_of_several_rigs_are_told_as_a_range(write_run: WriteRun) -> None:
     rows = [row for share, rig in ((42.0, "a"), (50.0, "b"), (52.0, "c")) for row in crossing_at(share, rig)]
-    assert "in views of up to 63° to 78° across (median 75°) on all 3 rigs, abraham" in limit(write_run, rows)
+    assert (
+        "On all 3 rigs a perspective image has the least log distortion up to 63° to 78° across (median 75°)"
+        in limit(write_run, rows)
+    )
 
 
 def test_a_perspective_image_ends_where_it_keeps_no_more(write_run: WriteRun) -> None:
     told = limit(write_run, crossing_at(90.0, "a", kept=0.56))
-    assert "in views of up to 84° across, abraham having less in wider ones" in told
+    assert "up to 84° across, abraham beyond" in told
 
 
 def test_rigs_without_a_crossing_are_told_apart(write_run: WriteRun) -> None:
     rows = [*crossing_at(150.0, "narrow"), *crossing_at(5.0, "wide")]
     assert limit(write_run, rows).endswith(
-        "in no view on wide, abraham having less from the middle on; in the whole view on narrow."
+        "On narrow a perspective image has the least log distortion in the whole view."
     )
 
 
 def test_many_rigs_are_counted_and_told_first(write_run: WriteRun) -> None:
     rows = [row for i in range(5) for row in crossing_at(5.0, f"wide-{i}")] + crossing_at(64.0, "a")
     assert limit(write_run, rows).endswith(
-        "in no view on 5 of 6 rigs, abraham having less from the middle on; in views of up to 96° across on "
-        "a, abraham having less in wider ones."
+        "perspective image has the least log distortion: abraham has less. On a a perspective image has the "
+        "least log distortion up to 96° across, abraham beyond."
     )
 
 

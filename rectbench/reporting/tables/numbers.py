@@ -12,6 +12,7 @@ MISSING = "–"
 _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _FIXED_RANGE = (1e-3, 1e4)
 _LONGEST_COUNT = 1e6
+_FACTORS_FROM = 3.0
 
 
 def shown(value: float | None, column: Column) -> str:
@@ -51,6 +52,30 @@ def signed(value: float) -> str:
     if math.isinf(value):
         return "+∞" if value > 0 else "−∞"
     return f"+{three_digits(value)}" if value > 0 else three_digits(value)
+
+
+def two_digits(value: float) -> str:
+    """A finite value with two significant digits, whole numbers whole: 0.012, 1.2, 120.
+
+    >>> two_digits(17.6), two_digits(0.1561)
+    ('18', '0.16')
+    """
+    rounded = float(f"{value:.1e}")
+    if rounded and _FIXED_RANGE[0] <= abs(rounded) < _FIXED_RANGE[1]:
+        decimals = max(0, 1 - math.floor(math.log10(abs(rounded))))
+        return _with_minus(f"{rounded:.{decimals}f}")
+    return three_digits(rounded)
+
+
+def change(ratio: float) -> str:
+    """A ratio as a change: in whole percent, beyond 3 as a factor.
+
+    >>> change(1.114), change(0.99), change(4.2)
+    ('+11 %', '−1 %', '4.2 times')
+    """
+    if not math.isfinite(ratio) or ratio >= _FACTORS_FROM:
+        return f"{two_digits(ratio)} times" if math.isfinite(ratio) else "endlessly"
+    return _with_minus(f"{100 * (ratio - 1):+.0f} %") if round(100 * (ratio - 1)) else "0 %"
 
 
 def decade(value: float) -> str:
