@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 from rectbench.plugins.metric import Column
 
@@ -17,18 +18,12 @@ _FACTORS_FROM = 3.0
 
 def shown(value: float | None, column: Column) -> str:
     """The stored `value` of a column as a reader sees it, in the column's shown unit."""
-    if value is None or math.isnan(value):
-        return MISSING
-    scaled = value * column.scale
-    if math.isinf(scaled):
-        return "∞" if scaled > 0 else "−∞"
-    if column.is_percentage:
-        return _percentage(scaled)
-    if column.is_count and abs(scaled) < _LONGEST_COUNT:
-        return str(round(scaled))
-    if 0 <= scaled < column.floor:
-        return f"<{_power_of_ten(round(math.log10(column.floor)))}"
-    return three_digits(scaled)
+    return _spelt(value, column, three_digits)
+
+
+def shown_roughly(value: float, column: Column) -> str:
+    """The same with two significant digits, enough for the end of an interval."""
+    return _spelt(value, column, two_digits)
 
 
 def three_digits(value: float) -> str:
@@ -85,6 +80,21 @@ def decade(value: float) -> str:
         return f"{value:g}"
     power = _power_of_ten(int(exponent))
     return power if float(mantissa) == 1 else f"{float(mantissa):g}×{power}"
+
+
+def _spelt(value: float | None, column: Column, digits: Callable[[float], str]) -> str:
+    if value is None or math.isnan(value):
+        return MISSING
+    scaled = value * column.scale
+    if math.isinf(scaled):
+        return "∞" if scaled > 0 else "−∞"
+    if column.is_percentage:
+        return _percentage(scaled)
+    if column.is_count and abs(scaled) < _LONGEST_COUNT:
+        return str(round(scaled))
+    if 0 <= scaled < column.floor:
+        return f"<{_power_of_ten(round(math.log10(column.floor)))}"
+    return digits(scaled)
 
 
 def _percentage(value: float) -> str:
