@@ -15,11 +15,20 @@ _OWN_VIEW = re.compile(r"(log_)?distortion|row_error|sampling")
 def share_of(column: Column) -> int | None:
     """The share (%) of the view that a column is of; None where it is of none.
 
-    >>> share_of(Column("row_error_95_mean_px", "row error, 95 %")), share_of(Column("view_kept", "view kept"))
+    >>> share_of(Column("log_distortion_95", "log distortion, 95 %")), share_of(Column("fit_s", "fit"))
     (95, None)
     """
     found = _SHARE.search(column.heading)
     return int(found[1]) if found and re.search(rf"_{found[1]}(_|$)", column.key) else None
+
+
+def measure(column: Column) -> str:
+    """What is measured, without what of the view it is over.
+
+    >>> measure(Column("log_distortion_95", "log distortion, 95 %"))
+    'log distortion'
+    """
+    return column.heading.partition(",")[0]
 
 
 def is_of_own_view(column: Column) -> bool:

@@ -15,7 +15,8 @@ from rectbench.plugins.result import Part
 from rectbench.reporting.asked import methods_part
 from rectbench.reporting.charts.critical_difference import LEAST_RIGS
 from rectbench.reporting.curves import RigCurves, ranked_share, rig_curves, shares
-from rectbench.reporting.tables.captions import capitalised, listed
+from rectbench.reporting.shares import measure
+from rectbench.reporting.tables.captions import counted, listed
 from rectbench.reporting.tables.numbers import change, shown
 from rectbench.reporting.tables.summaries import is_too_wide
 from rectbench.runs.run import Run
@@ -88,20 +89,18 @@ def leading(part: Part) -> str:
     who = f"{two.first} and {two.second} are not told apart{where}"
     if two.are_told_apart:
         who = f"{two.first} is ahead of {two.second}{where}"
-    measure = column.heading.partition(",")[0]
-    return (
-        f"{who}: {two.second}'s {measure} is {_more(ratios, two)}; {_ahead(two, column)}{_odds(two, column)}."
-    )
+    more = f"{two.second}'s {measure(column)} is {_more(ratios, two)}"
+    return f"{who}: {more}; {_ahead(two, column)}{_odds(two, column)}."
 
 
 def _more(ratios: Interval, two: _Leaders) -> str:
-    """How much more, and between what, such as 11 % more (−1 to +26 %)."""
+    """How much more, and between what, such as 11 % more (interval over rigs: −1 % to +26 %)."""
     more = f"{change(ratios.estimate).lstrip('+')} more"
     if is_too_wide(ratios):
         return f"{more} ({ratios.units} rigs: too few to tell)"
     corrected = not two.are_told_apart and ratios.low > 1
     alone = ", were these two the only methods" if corrected else ""
-    return f"{more} ({change(ratios.low)} to {change(ratios.high)}{alone})"
+    return f"{more} (interval over rigs: {change(ratios.low)} to {change(ratios.high)}{alone})"
 
 
 def _ahead(two: _Leaders, column: Column) -> str:
@@ -148,11 +147,12 @@ def turn(part: Part) -> str:
             views.append(view)
     if not views:
         return ""
-    median_of = " (median over rigs)" if len(views) > 1 else ""
-    always = f", and in the whole view on {listed(throughout)}" if throughout else ""
+    median_of = " (median)" if len(views) > 1 else ""
+    always = f", on {listed(throughout)} in the whole view" if throughout else ""
+    less = f"{two.second} has less {measure(part.catalogue.ranking)} than {two.first}"
     return (
-        f"{capitalised(two.second)}'s is lower in the inner part of the view, up to {median(views):.0f}° "
-        f"across{median_of}, on {len(views)} of {rigs} {'rig' if rigs == 1 else 'rigs'}{always}."
+        f"In the inner part of the view {less}: on {len(views)} of {counted(rigs, 'rig')} up to "
+        f"{median(views):.0f}° across{median_of}{always}."
     )
 
 
@@ -262,7 +262,7 @@ def _limit_text(limits: Mapping[str, _Limit], least: int) -> str:
     cases = [
         (
             never,
-            f"no view from {least} % of the pixels on is so narrow that {best}: {_winners(never)} has less",
+            f"{best} nowhere, not even on the inmost {least} % of the view: {_winners(never)} has less",
         ),
         (always, f"{best} in the whole view"),
         (crossing, f"{best} {_views(crossing)}, {_winners(crossing)} beyond"),

@@ -33,7 +33,7 @@ INTERVAL = "_interval"
 
 
 def main_tables(run: Run) -> list[Table]:
-    """Methods by key metrics, averaged over every rig, the one that ranks first; one table a part and pose."""
+    """Methods by key metrics, averaged over rigs, the one that ranks first; a table a part and pose."""
     return [
         _main_table(methods, pose)
         for part in run.parts

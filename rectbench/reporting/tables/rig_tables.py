@@ -8,13 +8,12 @@ from dataclasses import replace
 from rectbench.plugins.metric import Column
 from rectbench.plugins.result import Result
 from rectbench.reporting.curves import ranked_by, ranked_share, ranking_stem, view_key
+from rectbench.reporting.footnotes import with_footnotes
 from rectbench.reporting.names import named, slug
 from rectbench.reporting.tables.captions import averages_text, capitalised, units_text
 from rectbench.reporting.tables.findings import reversals
-from rectbench.reporting.tables.footnotes import with_footnotes
-from rectbench.reporting.tables.lacking import KEEPS, lacking
 from rectbench.reporting.tables.numbers import MISSING
-from rectbench.reporting.tables.standings import Standing, standing
+from rectbench.reporting.tables.standings import KEEPS, Standing, lacking, standing
 from rectbench.reporting.tables.summaries import averaged
 from rectbench.reporting.tables.table import (
     Entry,
@@ -40,12 +39,12 @@ from rectbench.reporting.tables.tabulation import (
 from rectbench.runs.run import Run
 
 _SHARES = (
-    "A share of the view are the source pixels nearest to its middle, the same for all methods. Shown, area "
-    "and shape are over all that each method itself shows, more or less of it, so that none of them is the best."
+    "A share of the view is that of the source pixels nearest to its middle, the same for all methods. "
+    "Shown, area and shape are over what each method itself shows, be it little, and name no best method."
 )
 _PROTOCOLS = (
-    "Over all that each method itself shows, more or less of the view, so that none is the best. Native: each "
-    "method's own scale; rescaled: the one scale best for L; stretched: the best scales of width and height."
+    "Over what each method itself shows, be it little, and so without a best one. Native: each method's own "
+    "scale; rescaled: the one scale best for L; stretched: the best scales of width and height."
 )
 
 
@@ -67,9 +66,7 @@ def rig_table(run: Run) -> Table | None:
         by_motion = {motion: run.select(results, motion=motion) for motion in run.motions}
         sections += [Section(m, _rig_rows(run, own, methods, views)) for m, own in by_motion.items()]
     view_heads = (
-        Heading(
-            "field of view [°]", view.key, meaning=f"Horizontal, of the {share} % of the view that is scored."
-        )
+        Heading("field of view [°]", view.key, meaning=f"Horizontal, of the {share} % of the view.")
         for view in views
     )
     table = Table(
@@ -94,9 +91,7 @@ def _rig_caption(run: Run, results: Sequence[Result], found: Standing, has_view:
         + (f", its {INTERVAL_LEVEL} interval in brackets." if _has_intervals(found, ranking) else "."),
     ]
     if any(why.startswith(KEEPS) for why in found.behind.values()):
-        told.append(
-            f"Where a method shows too little for a number, {KEEPS} tells how much of the view it shows."
-        )
+        told.append(f"“{KEEPS} N %” stands where a method shows N % of the view, too little for a number.")
     return " ".join(told)
 
 

@@ -10,14 +10,16 @@ from rectbench.plugins.catalogue import Catalogue
 from rectbench.plugins.metric import Column
 from rectbench.plugins.result import Result
 from rectbench.reporting.curves import KEPT, ranked_by, ranked_share
-from rectbench.reporting.tables.captions import capitalised, listed
-from rectbench.reporting.tables.lacking import MISFIT_LIMIT_PX, ROWS_OFF, is_misfit, lacking
-from rectbench.reporting.tables.numbers import two_digits
+from rectbench.reporting.tables.captions import capitalised, counted, listed
+from rectbench.reporting.tables.numbers import MISSING, two_digits
 from rectbench.reporting.tables.summaries import Summary, averaged
 from rectbench.runs.units import by_rig, floor_of
 from rectbench.statistics.ranking import Ranking, rank, signed_rank_caveat
 
 _KEPT = Column(KEPT, "view kept")
+MISFIT, MISFIT_LIMIT_PX = "row_misfit_px", 2.0
+"""The column of how far a map puts rows off, and beyond what it is no rectification."""
+ROWS_OFF, KEEPS = "rows off by", "keeps"
 _TWICE = 2.0
 """Ratios up to this are told as a difference in percent, larger ones as a factor."""
 
@@ -84,8 +86,8 @@ def _design_text(found: Ranking) -> str:
     if found.resolves is None:
         return ""
     return (
-        f"{_ratio_text(found.resolves)} between two methods shows on {found.units} rigs in four cases of five; "
-        "where no difference shows, methods share their places, such as 1–2."
+        f"{_ratio_text(found.resolves)} between two methods shows on {found.units} rigs in four cases of "
+        "five; where no difference shows, methods share their places, such as 1–2."
     )
 
 
@@ -125,3 +127,32 @@ def behind_text(found: Standing, catalogue: Catalogue) -> str:
             f"rectification: {listed(crooked)}."
         )
     return " ".join(told)
+
+
+def is_misfit(result: Result) -> bool:
+    """Whether the map is no rectification of the pair."""
+    return result.metrics.get(MISFIT, 0.0) > MISFIT_LIMIT_PX
+
+
+def lacking(results: Sequence[Result], column: Column) -> str:
+    """Why a method has no number of a column on all of these pairs, and on how many where it has some.
+
+    "rows off by 3.4 px" is the worst of them, "keeps 43 % on 2 of 12" the mean of the two, in whole percent
+    downwards. Empty where every pair has a number, a dash where nothing is known of those without.
+    """
+    without = [r for r in results if column.key not in r.metrics]
+    if not without:
+        return ""
+    crooked = [r for r in without if is_misfit(r)]
+    kept = [r for r in without if r.metrics.get(KEPT, 1.0) < 1]
+    failed = [r for r in without if not r.ok]
+    if crooked:
+        said, about = f"{ROWS_OFF} {two_digits(max(r.metrics[MISFIT] for r in crooked))} px", crooked
+    elif kept:
+        share = math.fsum(r.metrics[KEPT] for r in kept) / len(kept)
+        said, about = f"{KEEPS}\u00a0{math.floor(100 * share + 1e-6)}\u00a0%", kept
+    elif failed:
+        return f"{counted(len(failed), 'cell')} failed"
+    else:
+        return MISSING
+    return said if len(about) == len(results) else f"{said} on {len(about)} of {len(results)}"
