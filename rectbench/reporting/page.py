@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from rectbench.pairs.spec import NO_SCENE
 from rectbench.plugins.result import distinct
-from rectbench.reporting.asked import methods_part, part_title
+from rectbench.reporting.asked import methods_part, part_title, wanted_figures
+from rectbench.reporting.charts.critical_difference import CriticalDifference, why_not_drawn
 from rectbench.reporting.figures import EXTENSIONS, Drawn
 from rectbench.reporting.names import slug
+from rectbench.reporting.shares import explained
 from rectbench.reporting.style import looks
-from rectbench.reporting.tables.findings import perspective_limit
+from rectbench.reporting.tables.findings import findings
+from rectbench.reporting.tables.main_tables import is_ranked
 from rectbench.reporting.tables.table import SPELLINGS, Entry, Table
 from rectbench.reporting.tables.tabulation import ALL_MOTIONS, ALL_RIGS
 from rectbench.runs.record import RunRecord
@@ -58,12 +61,16 @@ _FACTS = {
 
 @dataclass(frozen=True)
 class Topic:
-    """A section of a part: its tables and its figures; `anchor` is where links lead."""
+    """A section of a part: its tables and its figures, and what is to be said of those that are not there.
+
+    `anchor` is where links lead.
+    """
 
     anchor: str
     title: str
     tables: list[Table]
     figures: list[Drawn]
+    note: str = ""
 
 
 @dataclass(frozen=True)
@@ -74,8 +81,8 @@ class Part:
     anchor: str
     title: str
     topics: list[Topic]
-    finding: str
-    """See `perspective_limit`; empty where another part, of more rigs, tells it better."""
+    findings: tuple[str, ...]
+    """What it tells, a sentence each."""
 
 
 def render_page(run: Run, tables: Sequence[Table], drawn: Sequence[Drawn]) -> str:
@@ -96,22 +103,16 @@ def render_page(run: Run, tables: Sequence[Table], drawn: Sequence[Drawn]) -> st
     }
     shown = {part.group: methods_part(part) for part in run.parts}
     methods = distinct(m for part in shown.values() if part for m in part.methods)
-    widest = max(filter(None, shown.values()), key=lambda part: len(part.rigs), default=None)
+    found = findings(run)
     return environment.get_template("index.html.j2").render(
         run=run,
         record=run.record,
         methods=methods,
+        methods_count=len({r.cell.method for part in shown.values() if part for r in part.results}),
+        glossary=explained(map(run.catalogue.column, run.metrics)),
         of_kind={table.kind: table for table in tables},
         scenes=[scene for scene in run.scenes if scene != NO_SCENE],
-        parts=[
-            _part(
-                part,
-                tables,
-                drawn,
-                perspective_limit(widest) if widest and part.group == widest.group else "",
-            )
-            for part in run.parts
-        ],
+        parts=[_part(part, tables, drawn, found.get(part.group, ())) for part in run.parts],
         tables=tables,
         colours={method: look.colour for method, look in looks(run.methods).items()},
         facts=_facts(run.record),
@@ -120,7 +121,7 @@ def render_page(run: Run, tables: Sequence[Table], drawn: Sequence[Drawn]) -> st
     )
 
 
-def _part(part: Run, tables: Sequence[Table], drawn: Sequence[Drawn], finding: str) -> Part:
+def _part(part: Run, tables: Sequence[Table], drawn: Sequence[Drawn], told: tuple[str, ...]) -> Part:
     anchor = slug("part", part.group) if part.group else ""
     heading_of = {slug(topic): topic for topic in part.catalogue.topics} | _TABLES
     mine = [table for table in tables if table.part == part.group and table.kind in heading_of]
@@ -135,7 +136,18 @@ def _part(part: Run, tables: Sequence[Table], drawn: Sequence[Drawn], finding: s
         )
     between = sorted(found.keys() - {*FIRST, *LAST})
     topics = [found[heading] for heading in (*FIRST, *between, *LAST) if heading in found]
-    return Part(part.group, anchor, part_title(part), topics, finding)
+    if topics and (note := _absent_figure(part)):
+        place = next((i for i, topic in enumerate(topics) if topic.title == CriticalDifference.topic), 0)
+        topics[place] = replace(topics[place], note=note)
+    return Part(part.group, anchor, part_title(part), topics, told)
+
+
+def _absent_figure(part: Run) -> str:
+    """Why the figure of critical differences is not there, where it is asked for and methods are ranked."""
+    methods = methods_part(part)
+    if methods is None or not is_ranked(methods) or CriticalDifference.name not in wanted_figures(part):
+        return ""
+    return why_not_drawn(methods)
 
 
 def _sort_value(entry: Entry) -> str:

@@ -8,9 +8,10 @@ from matplotlib import rc_context
 from matplotlib.figure import Figure
 
 from rectbench.plugins.figure import FigureData
-from rectbench.reporting.charts.bars import bar_chart
-from rectbench.reporting.charts.coverage_curve import DistortionCoverage
-from rectbench.reporting.charts.grouped_bars import draw_bars
+from rectbench.reporting.charts.bars import Bars, bar_chart
+from rectbench.reporting.charts.coverage_curve import DistortionCoverage, alike
+from rectbench.reporting.charts.grouped_bars import BarChart, draw_bars
+from rectbench.reporting.curves import rig_curves
 from rectbench.reporting.style import STYLE, looks
 from rectbench.runs.run import read_run
 from tests.reporting.runs import METHODS, failed_row, fake_sources, make_row, quick_rows
@@ -66,6 +67,35 @@ def test_a_curve_shows_the_numbers_and_ends_where_its_method_keeps_no_more(write
     assert list(conventional.get_xdata()) == [10, 20, 30, 40, 50, 60]
     assert list(abraham.get_xdata())[-1] == 100
     assert conventional.get_ydata()[-1] == pytest.approx(row["log_distortion_60"])
+
+
+def test_curves_that_lie_on_one_another_take_turns_in_dashes(write_run: WriteRun) -> None:
+    rows = [make_row("none", "t265", "exact", m) for m in ("conventional", "abraham")]
+    twin = rows[0] | {"method": "fusiello"} | {k: 1.03 * v for k, v in rows[0].items() if "log_dist" in k}
+    run = read_run(write_run([*rows, twin]))
+    assert alike(rig_curves(run)[0]) == [["conventional", "fusiello"], ["abraham"]]
+    (ax,) = drawn_curves(write_run([*rows, twin])).axes
+    styles = {line.get_color(): line.get_linestyle() for line in ax.lines if len(line.get_xdata()) > 2}
+    assert styles == {
+        run_looks.colour: "--" if method != "abraham" else "-"
+        for method, run_looks in looks(run.methods).items()
+    }
+
+
+def test_row_errors_are_compared_on_the_same_matches_and_a_gap_is_no_failure(write_run: WriteRun) -> None:
+    run = read_run(write_run([r | {"group": "pairs"} for r in quick_rows(poses=("perturbed",))], spec=PAIRS))
+    part = run.part("pairs")
+    drawings = list(Bars().drawings(FigureData(part, run, fake_sources(), looks(run.methods))))
+    (drawing,) = (one for one in drawings if one.stem == "row-error")
+    chart = drawing.made_from
+    assert isinstance(chart, BarChart)
+    assert list(chart.panels) == [f"of true correspondences in {share} % of the view" for share in (50, 95)]
+    bar = chart.panels["of true correspondences in 95 % of the view"]["street\nt265"]["conventional"]
+    assert (bar.mean, bar.failure) == (None, "")
+    assert "no bar" in drawing.caption
+
+
+PAIRS = {"groups": [{"name": "pairs", "title": "Pairs", "figures": []}]}
 
 
 def test_the_view_of_a_share_stands_below_it_in_degrees(write_run: WriteRun) -> None:

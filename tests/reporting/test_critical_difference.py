@@ -15,6 +15,7 @@ from rectbench.reporting.charts.critical_difference import (
     draw_ranks,
     mean_ranks,
     shown_beliefs,
+    why_not_drawn,
 )
 from rectbench.reporting.style import looks
 from rectbench.runs.run import read_run
@@ -44,6 +45,15 @@ def placed(*orders: str) -> Decided:
         for method in sorted(orders[0])
     }
     return Decided("log distortion", 1e-9, values)
+
+
+def test_why_there_is_no_figure_is_told_in_a_line(write_run: WriteRun) -> None:
+    few = read_run(write_run(rows(RIGS[:9], tuple(METHODS)[:2])))
+    assert why_not_drawn(few) == (
+        "No figure of critical differences: it takes 3 methods with a number of log distortion at 95 % of "
+        "the view on 10 rigs; here are 2 methods on 9 rigs."
+    )
+    assert why_not_drawn(read_run(write_run(rows(RIGS), "many"))) == ""
 
 
 @pytest.mark.parametrize(("rigs", "methods", "count"), [(9, 5, 0), (10, 5, 2), (10, 2, 0), (10, 3, 2)])

@@ -75,18 +75,46 @@ def test_a_long_table_is_folded_behind_the_averages_over_all_rigs(reported: Path
 
 def test_the_limit_of_perspective_images_is_told_once_by_the_part_of_most_rigs(reported: Path) -> None:
     text = (reported / "index.html").read_text()
-    told = [match.start() for match in re.finditer("A perspective image has less log distortion", text)]
+    told = [match.start() for match in re.finditer("On all 8 rigs a perspective image has the least", text)]
     assert len(told) == 1
     assert text.index('id="part-lenses"') < told[0] < text.index('id="part-pairs"')
-    assert "on all 8 rigs" in text[told[0] : told[0] + 200]
 
 
 def test_the_page_counts_scenes_and_not_their_lack(reported: Path) -> None:
     assert "<dt>scenes</dt><dd>2</dd>" in (reported / "index.html").read_text()
 
 
+def test_the_page_counts_methods_and_not_what_their_matches_are(tmp_path: Path) -> None:
+    own = [row for row in rows() if row["group"] == "lenses"]
+    true_ones = [row | {"matches": "true + 0.1 px"} for row in own if row["matches"]]
+    folder = save_run(tmp_path / "run", own + true_ones, spec={"groups": SPEC["groups"][:1]})
+    write_report(folder, sources=fake_sources(96))
+    assert len(read_run(folder).methods) == 7
+    assert "<dt>methods</dt><dd>5</dd>" in (folder / "index.html").read_text()
+
+
+def test_the_glossary_has_one_entry_for_all_shares_of_a_thing(reported: Path) -> None:
+    glossary = (reported / "index.html").read_text().partition('id="reading"')[2].partition("</dl>")[0]
+    assert glossary.count("<code>log_distortion_N, N = 10, ") == 1
+    assert "<code>log_distortion_10</code>" not in glossary
+
+
+def test_the_hint_about_clicks_stands_below_the_table_that_they_sort(reported: Path) -> None:
+    text = (reported / "index.html").read_text()
+    first, second = text.index('<table class="main sortable'), text.index('<table class="rigs')
+    assert first < text.index("A click on a heading sorts") < second
+
+
+def test_each_finding_is_an_entry_of_its_own(reported: Path) -> None:
+    text = (reported / "index.html").read_text()
+    (lenses,) = re.findall(r'id="part-lenses">.*?<ul class="finding">(.*?)</ul>', text, re.DOTALL)
+    assert lenses.count("<li>") == 3
+
+
 def test_an_average_tells_its_interval_under_the_pointer(reported: Path) -> None:
-    assert re.search(r'title="95 % interval [\d.]+–[\d.]+">', (reported / "index.html").read_text())
+    assert re.search(
+        r'title="95 % confidence interval: [\d.]+–[\d.]+">', (reported / "index.html").read_text()
+    )
 
 
 def test_bars_are_for_pairs_with_a_scene(reported: Path) -> None:

@@ -73,7 +73,8 @@ def contents(folder: Path) -> dict[str, bytes]:
 
 def test_the_contract_s_files_are_there(reported: Path) -> None:
     figures = {
-        "row-error-perturbed",
+        "row-error-50-perturbed",
+        "row-error-95-perturbed",
         "distortion-native",
         "distortion-rescaled",
         "distortion-coverage",
@@ -174,7 +175,7 @@ def test_what_has_not_changed_is_not_drawn_again(reported: Path) -> None:
 
     write_report(reported, sources=fake_sources(160), progress=Counted())
     assert {p: p.stat().st_mtime_ns for p in (reported / "figures").iterdir()} == before
-    assert steps == [8] * 8
+    assert steps == [9] * 9
 
 
 def test_changed_numbers_are_drawn_again_and_leftovers_removed(write_run: WriteRun, sources: Sources) -> None:

@@ -73,8 +73,8 @@ def test_the_caption_names_units_and_rules(results: tuple[Result, ...]) -> None:
         Column("d", "row error, max", average="max"),
     ]
     assert averages_text(results, columns) == (
-        "Means over 2 rigs (4 pairs in all): geometric of log distortion; the largest of row error, max; "
-        "arithmetic of the rest."
+        "Geometric means of log distortion, the largest of row error, max, arithmetic means of the rest, "
+        "over 2 rigs (4 pairs in all)."
     )
 
 

@@ -13,6 +13,8 @@ from rich.text import Text
 
 from rectbench.cli.printing.screen import console, plain_table
 from rectbench.metrics.view import across_key
+from rectbench.reporting.footnotes import with_footnotes
+from rectbench.reporting.tables.findings import findings
 from rectbench.reporting.tables.main_tables import INTERVAL, main_tables
 from rectbench.reporting.tables.numbers import shown, signed
 from rectbench.runs.run import read_run
@@ -32,13 +34,20 @@ _BETWEEN = 3
 
 
 def show_summary(folder: Path) -> None:
-    """The main tables of a run, and where its page is."""
+    """What each part of a run tells, its main tables, and where the page is."""
     screen, found = console(), read_run(folder)
     page_only = {column.key for column in found.catalogue.shown("page")}  # they make it too wide
-    for summary in main_tables(found):
+    told = findings(found)
+    for summary in map(with_footnotes, main_tables(found)):
+        for sentence in told.pop(summary.part, ()):
+            screen.print(Text(sentence, style="italic"))
+            screen.print()
         screen.print(Text(summary.title, style="bold"))
         screen.print(Text(summary.caption))
-        screen.print(_as_wide_as(screen.width, summary, page_only))
+        table, left_out = _as_wide_as(screen.width, summary, page_only)
+        screen.print(table)
+        if left_out:
+            screen.print(Text(f"{left_out} more columns in a wider terminal and on the page."))
         for note in summary.notes:
             screen.print(Text(note))
         screen.print()
@@ -48,10 +57,11 @@ def show_summary(folder: Path) -> None:
     screen.print(f"{len(found.results)} cells; page: {folder / 'index.html'}", soft_wrap=True)
 
 
-def _as_wide_as(width: int, summary: Summary, page_only: Collection[str]) -> Table:
+def _as_wide_as(width: int, summary: Summary, page_only: Collection[str]) -> tuple[Table, int]:
     """The columns for a terminal, as many as it has room for: headings are folded, never the numbers.
 
-    Intervals stand on the page; here they would press the numbers.
+    What ranks stands first, and so is never left out; how many columns are comes second. Intervals stand on
+    the page; here they would press the numbers.
     """
     columns = [
         i
@@ -71,7 +81,7 @@ def _as_wide_as(width: int, summary: Summary, page_only: Collection[str]) -> Tab
         table.add_column(Text("\n".join(lines)), justify=side, width=widest)  # Text: [px] is no markup
     for row in summary.rows:
         table.add_row(*(Text(row[i].text, style="bold" if row[i].best else "") for i in columns[: len(used)]))
-    return table
+    return table, len(columns) - len(used)
 
 
 def show_gating(found: Gating) -> None:

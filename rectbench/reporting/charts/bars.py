@@ -2,17 +2,28 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import replace
 from itertools import product
 
 from rectbench.pairs.spec import NO_SCENE
 from rectbench.plugins.figure import Drawing, Figure, FigureData
 from rectbench.plugins.result import Part, Result
-from rectbench.reporting.charts.grouped_bars import Bar, BarChart, bar_drawing, bar_of
-from rectbench.reporting.names import pair_labels
+from rectbench.reporting.charts.grouped_bars import NO_VALUE, Bar, BarChart, bar_drawing, bar_of
+from rectbench.reporting.names import pair_labels, slug
+from rectbench.reporting.shares import share_of
 
 _BOUNDED = ("distortion_rescaled", "distortion_stretched")
 """Never far above 1, as every image may be shrunk: a logarithmic axis would hide a third more or less."""
+_ON_COMMON_MATCHES = {
+    "row_error_50_mean_px": "of true correspondences in 50 % of the view",
+    "row_error_95_mean_px": "of true correspondences in 95 % of the view",
+    "row_error_features_50_mean_px": "of SIFT matches in 50 % of the view",
+    "row_error_features_95_mean_px": "of SIFT matches in 95 % of the view",
+}
+"""Row errors on the same matches for all methods, and what stands above their panels."""
+_GAPS = " All methods on the same matches; one that shows less of the view has no bar."
 _CAPTIONS = {
     "distortion_native": "The paper's distortion L on each pair, each method at its authors' own scale.",
     "distortion_rescaled": "The same after the one scale of the image that is best for each method.",
@@ -39,11 +50,15 @@ class Bars(Figure):
 
 def _by_scene(given: FigureData) -> Iterator[Drawing]:
     part = given.part
-    if "row_error_mean_px" in part.metrics:
+    for key, of in _ON_COMMON_MATCHES.items():
+        if key not in part.metrics or "features" in key:
+            continue
         for pose in part.noisy_poses:
-            chart = bar_chart(part, "row_error_mean_px", pose, reference=1.0)
-            caption = "Mean row error of true correspondences on each pair."
-            yield bar_drawing(chart, given, "row-error", f"Row error, {pose} pose", caption, pose)
+            chart = bar_chart(part, key, pose, reference=1.0)
+            share = f"{share_of(part.catalogue.column(key))} %"
+            title = f"Row error in {share} of the view, {pose} pose"
+            caption = f"Mean row error {of} on each pair.{_GAPS}"
+            yield bar_drawing(chart, given, slug("row-error", share), title, caption, pose)
     for key, caption in _CAPTIONS.items():
         if key in part.metrics:
             chart = bar_chart(part, key, part.geometric_pose)
@@ -52,13 +67,14 @@ def _by_scene(given: FigureData) -> Iterator[Drawing]:
 
 def _by_pair(given: FigureData) -> Iterator[Drawing]:
     part, pose = given.part, given.part.geometric_pose
-    row_errors, protocols = part.catalogue.panels("Row error"), part.catalogue.panels("Distortion")
+    row_errors, protocols = _row_errors(part), part.catalogue.panels("Distortion")
     if any(key in part.metrics for key in row_errors):
         for noisy in part.noisy_poses:
             chart = pair_chart(part, "row error [px]", row_errors, noisy, reference=1.0)
             caption = "Mean row error on each pair, measured in the images" + (
                 " and against the truth." if part.has_truth else "."
             )
+            caption += _GAPS if any(key in _ON_COMMON_MATCHES for key in row_errors) else ""
             of = noisy if len(part.noisy_poses) > 1 else ""
             yield bar_drawing(chart, given, "row-error", f"Row error, {noisy} pose", caption, of)
     if any(key in part.metrics for key in protocols):
@@ -67,6 +83,19 @@ def _by_pair(given: FigureData) -> Iterator[Drawing]:
         if chart.linear:
             caption += " Rescaled and stretched have a linear axis from 0."
         yield bar_drawing(chart, given, "distortion", "Distortion by protocol", caption)
+
+
+def _row_errors(part: Part) -> dict[str, str]:
+    """The row errors that a part has, on the matches that are common to all methods where it has these."""
+    common = {key: title for key, title in _ON_COMMON_MATCHES.items() if key in part.metrics}
+    own = {key: title for key, title in part.catalogue.panels("Row error").items() if key in part.metrics}
+    kept = {key: title for key, title in own.items() if _common_of(key) not in map(_common_of, common)}
+    return {**common, **kept}
+
+
+def _common_of(key: str) -> str:
+    """The row error without its share of the view."""
+    return re.sub(r"_(50|95)(?=_mean_px$)", "", key)
 
 
 def bar_chart(run: Part, key: str, pose: str, reference: float | None = None) -> BarChart:
@@ -78,7 +107,7 @@ def bar_chart(run: Part, key: str, pose: str, reference: float | None = None) ->
         title = f"{rig}, {motion}" if len(run.motions) > 1 else rig
         groups = {
             scene: {
-                method: bar_of(run.select(cells, method=method), key, shown_as.scale)
+                method: _bar(run.select(cells, method=method), key, shown_as.scale)
                 for method in run.methods
                 if any(r.method == method for r in cells)
             }
@@ -93,6 +122,12 @@ def bar_chart(run: Part, key: str, pose: str, reference: float | None = None) ->
     if reference is not None and not (values and 0.1 * reference < max(values)):
         reference = None  # far above all bars: a line there would press them to the floor
     return BarChart(shown_as.full_heading, shown_as.floor, reference, methods, panels)
+
+
+def _bar(results: Sequence[Result], key: str, scale: float) -> Bar:
+    """The bar of a method; one that shows too little of the view has not failed."""
+    bar = bar_of(results, key, scale)
+    return replace(bar, failure="") if key in _ON_COMMON_MATCHES and bar.failure == NO_VALUE else bar
 
 
 def pair_chart(
@@ -116,7 +151,7 @@ def pair_chart(
             scale = run.catalogue.column(key).scale
             panels[title] = {
                 label: {
-                    method: bar_of(run.select(results, place=place, method=method), key, scale)
+                    method: _bar(run.select(results, place=place, method=method), key, scale)
                     for method in run.methods
                 }
                 for place, label in labels.items()

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from rectbench.plugins.figure import Drawing, Figure, FigureData, Look
 from rectbench.reporting.curves import RigCurves, ranked_share, rig_curves
+from rectbench.reporting.shares import measure
 from rectbench.reporting.style import COLUMN_INCHES, FAINT, PAGE_INCHES, plain_log_ticks
 
 if TYPE_CHECKING:
@@ -20,6 +21,10 @@ _PANEL_INCHES = 1.42
 _MARK_INCHES, _LETTER_INCHES = 0.4, 0.055
 """Of an entry of the legend in width."""
 _TICKS = (10, 50, 95)
+_ALIKE = 1.08
+"""Curves whose values differ by less than this factor lie on one another: they are a line's width apart."""
+_DASH, _MARK, _RING = 2.6, 3.0, 1.7
+"""Points: of a dash where curves lie on one another, of a curve's mark, and of what is seen of one behind."""
 _LEAST = 1e-3
 """Less log distortion than this is as good as none, and drawn here."""
 
@@ -46,14 +51,15 @@ class DistortionCoverage(Figure):
         part = given.part
         panels, ranked_at = rig_curves(part), ranked_share(part.catalogue)
         if panels and ranked_at is not None:
-            label = part.catalogue.ranking.heading.partition(",")[0]
+            label = measure(part.catalogue.ranking)
             data = CoverageCurves(label, part.methods, panels, ranked_at)
             yield Drawing(
                 "distortion-coverage",
                 "Distortion against coverage",
                 f"{label.capitalize()} on the share of the view that is nearest to its middle, on the same "
                 "source pixels for all methods; below a share, the field of view in degrees. A curve ends "
-                f"where its method shows no more. Lower is better; the dotted line is at {ranked_at} %.",
+                f"where its method shows no more. Lower is better; the dotted line is at {ranked_at} %."
+                f"{_ALIKE_TEXT if any(map(_has_alike, panels)) else ''}",
                 data,
                 lambda: draw_curves(data, given.looks),
             )
@@ -93,16 +99,46 @@ def draw_curves(data: CoverageCurves, looks: Mapping[str, Look]) -> matplotlib.f
 def _draw_panel(ax: Axes, one: RigCurves, data: CoverageCurves, looks: Mapping[str, Look]) -> None:
     ax.set_title(one.rig)
     ax.axvline(data.ranked_at, color=FAINT, linewidth=0.6, linestyle=":", zorder=1)
-    for method, curve in one.curves.items():
-        if curve:
-            colour, marker, _ = looks[method]
-            ends = [len(curve) - 1]
+    for group in alike(one):
+        for place, method in enumerate(group):
+            curve, (colour, marker, _) = one.curves[method], looks[method]
             values = [max(value, _LEAST) for value in curve.values()]
-            ax.plot(list(curve), values, color=colour, marker=marker, markersize=3, markevery=ends)
+            ax.plot(list(curve), values, color=colour, linestyle=_dashes(place, len(group)))
+            size = _MARK + _RING * (len(group) - 1 - place)
+            ax.plot(list(curve)[-1], values[-1], color=colour, marker=marker, markersize=size)
     ax.set_xlim(0, 104)
     ticks = [data.ranked_at if tick == _TICKS[-1] else tick for tick in _TICKS]
     ax.set_xticks(ticks, [_tick(one, tick) for tick in ticks])
     ax.grid(color="#dddddd", linewidth=0.5)
+
+
+def _dashes(place: int, of: int) -> str | tuple[float, tuple[float, float]]:
+    """The dashes of one of several curves that take turns; a curve of its own has none."""
+    return "-" if of == 1 else ((of - place) * _DASH, (_DASH, (of - 1) * _DASH))
+
+
+def alike(one: RigCurves) -> list[list[str]]:
+    """The methods that have a curve, those whose curves lie on one another together."""
+    groups: list[list[str]] = []
+    for method in (m for m, curve in one.curves.items() if curve):
+        group = next((g for g in groups if _lie_together(one.curves[g[0]], one.curves[method])), None)
+        if group is None:
+            groups.append([method])
+        else:
+            group.append(method)
+    return groups
+
+
+def _lie_together(curve: Mapping[int, float], other: Mapping[int, float]) -> bool:
+    ratios = [max(curve[s], _LEAST) / max(other[s], _LEAST) for s in curve if s in other]
+    return bool(ratios) and max(max(ratio, 1 / ratio) for ratio in ratios) < _ALIKE
+
+
+def _has_alike(one: RigCurves) -> bool:
+    return any(len(group) > 1 for group in alike(one))
+
+
+_ALIKE_TEXT = " Curves that lie on one another take turns in dashes, their marks one around the other."
 
 
 def _tick(one: RigCurves, share: int) -> str:

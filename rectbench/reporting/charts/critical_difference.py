@@ -12,10 +12,11 @@ import numpy as np
 
 from rectbench.plugins.figure import Drawing, Figure, FigureData, Look
 from rectbench.plugins.result import Part, distinct
+from rectbench.reporting.curves import ranked_by
 from rectbench.reporting.style import FAINT, INK, LOST, PAGE_INCHES, PAPER
 from rectbench.runs.units import by_rig, floor_of
 from rectbench.statistics.bayes import BEYOND, EQUIVALENT, Belief, signed_rank
-from rectbench.statistics.intervals import ALPHA
+from rectbench.statistics.intervals import ALPHA, counted
 from rectbench.statistics.paired import TIE
 from rectbench.statistics.ranking import rank
 
@@ -62,7 +63,7 @@ class CriticalDifference(Figure):
     def drawings(self, given: FigureData) -> Iterator[Drawing]:
         """Both, of a part with ten rigs or more; else none."""
         data = decided(given.part)
-        if len(data.values) < LEAST_METHODS or data.rigs < LEAST_RIGS:
+        if why_not_drawn(given.part):
             return
         yield Drawing(
             "critical-difference",
@@ -94,7 +95,20 @@ def decided(part: Part) -> Decided:
     rigs = distinct(rig for own in values.values() for rig in own)
     order = rank(values, floor=floor_of(column)).order
     filled = {method: {rig: values[method].get(rig, math.inf) for rig in rigs} for method in order}
-    return Decided(column.heading, floor_of(column), filled)
+    return Decided(ranked_by(part.catalogue), floor_of(column), filled)
+
+
+def why_not_drawn(part: Part) -> str:
+    """Why there is no figure of critical differences, a sentence; empty where there is one."""
+    data = decided(part)
+    methods, rigs = len(data.values), data.rigs if data.values else 0
+    if methods >= LEAST_METHODS and rigs >= LEAST_RIGS:
+        return ""
+    return (
+        f"No figure of critical differences: it takes {LEAST_METHODS} methods with a number of "
+        f"{ranked_by(part.catalogue)} on {LEAST_RIGS} rigs; here are {counted(methods, 'method')} on "
+        f"{counted(rigs, 'rig')}."
+    )
 
 
 def _lacking(data: Decided, then: str) -> str:

@@ -21,6 +21,8 @@ _LEAST_BAR_INCHES = 0.06
 _LABEL_BAR_INCHES = 0.075
 _LETTER_INCHES = 0.055
 _LOG_FROM = 20.0
+NO_VALUE = "no value"
+"""Why there is no bar though nothing failed."""
 _CROSS: dict[str, Any] = {"marker": "x", "markersize": 3.2}
 
 
@@ -53,9 +55,9 @@ def bar_of(results: Sequence[Result], key: str, scale: float) -> Bar:
     """The mean of a column over cells, times `scale`, with its range."""
     values = [r.metrics[key] * scale for r in results if r.ok and math.isfinite(r.metrics.get(key, math.nan))]
     failed = [r.status for r in results if not r.ok]
-    failure = failed[0] if failed else "no value" if len(values) < len(results) else ""
+    failure = failed[0] if failed else NO_VALUE if len(values) < len(results) else ""
     if not values:
-        return Bar(None, None, None, failure or "no value")
+        return Bar(None, None, None, failure or NO_VALUE)
     return Bar(sum(values) / len(values), min(values), max(values), failure)
 
 

@@ -15,6 +15,7 @@ from rectbench.plugins.figure import FigureData, Sources
 from rectbench.plugins.result import Result
 from rectbench.reporting.pictures.pair_picture import PairPicture
 from rectbench.reporting.pictures.panels import attempts, fit_into_box, panel_grid, write_head, write_message
+from rectbench.reporting.shares import measure, share_of
 from rectbench.reporting.style import PAGE_INCHES
 from rectbench.reporting.tables.numbers import shown
 from rectbench.types import FloatArray, Matches
@@ -115,13 +116,16 @@ def _panel(sources: Sources, result: Result, pair: StereoPair, marks: Shown) -> 
     rect = sources.rectification(result)
     errors = [key for key in _ERRORS if key in result.metrics][:1]
     keys = [*errors, *(key for key in (known().ranking.key,) if key in result.metrics)]
-    note = ",  ".join(f"{column(k).heading} {_quantity(result.metrics[k], k)}" for k in keys)
+    note = ",  ".join(_quantity(result.metrics[key], key) for key in keys)
     return Panel(note, *rect.remap(pair.left, pair.right), marks.moved(rect))
 
 
 def _quantity(value: float, key: str) -> str:
+    """What was measured: heading, number and unit, and of what share of the view."""
     shown_as = column(key)
-    return f"{shown(value, shown_as)} {shown_as.unit}".strip()
+    share = share_of(shown_as)
+    heading, of = (shown_as.heading, "") if share is None else (measure(shown_as), f"({share} % of view)")
+    return " ".join(filter(None, [heading, shown(value, shown_as), shown_as.unit, of]))
 
 
 def _marks(matches: Matches, pair: StereoPair) -> Shown:

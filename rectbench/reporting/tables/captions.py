@@ -10,17 +10,17 @@ from rectbench.plugins.metric import Average, Column
 from rectbench.plugins.result import Result, distinct
 
 _RULES: dict[Average, str] = {
-    "geometric": "geometric of",
+    "geometric": "geometric means of",
     "rms": "root mean squares of",
     "max": "the largest of",
     "min": "the smallest of",
-    "mean": "arithmetic of",
+    "mean": "arithmetic means of",
 }
 
 
 def averages_text(results: Sequence[Result], columns: Sequence[Column], scene: str = "scene") -> str:
     """What the averages of a table are over, and of what kind."""
-    return f"Means over {units_text(results, scene)}{_rules_text(columns)}."
+    return f"{_rules_text(columns)} over {units_text(results, scene)}."
 
 
 def units_text(results: Iterable[Result], scene: str = "scene") -> str:
@@ -50,17 +50,19 @@ def units_text(results: Iterable[Result], scene: str = "scene") -> str:
 
 
 def _rules_text(columns: Sequence[Column]) -> str:
-    """By which rule each column is averaged, in the fewest words; nothing where all are arithmetic means."""
+    """By which rule each column is averaged, in the fewest words."""
     groups = {rule: [c.heading for c in columns if c.average == rule] for rule in _RULES}
     groups = {rule: headings for rule, headings in groups.items() if headings}
     if set(groups) <= {"mean"}:
-        return ""
+        return "Means"
+    if len(groups) == 1:
+        return capitalised(_RULES[next(iter(groups))].removesuffix(" of"))
     told = [
         f"{_RULES[rule]} {listed(_stems(headings, columns, rule))}"
         for rule, headings in groups.items()
         if rule != "mean"
     ]
-    return ": " + "; ".join([*told, *["arithmetic of the rest"] * ("mean" in groups)])
+    return capitalised(", ".join([*told, *[f"{_RULES['mean']} the rest"] * ("mean" in groups)]) + ",")
 
 
 def _stems(headings: Sequence[str], columns: Sequence[Column], rule: Average) -> tuple[str, ...]:

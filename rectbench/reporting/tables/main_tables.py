@@ -13,6 +13,7 @@ from rectbench.reporting.tables.standings import Standing, behind_text, standing
 from rectbench.reporting.tables.summaries import Summary
 from rectbench.reporting.tables.table import Entry, Heading, Section, Table
 from rectbench.reporting.tables.tabulation import (
+    INTERVAL_LEVEL,
     METHOD_HEADINGS,
     NOT_OK_HEADING,
     PARTIAL,
@@ -25,12 +26,14 @@ from rectbench.reporting.tables.tabulation import (
 )
 from rectbench.runs.run import Run
 
+_Field = tuple[Heading, list[Entry]]
+"""A column of a table."""
 INTERVAL = "_interval"
 """Ends the name of the column that holds another one's intervals."""
 
 
 def main_tables(run: Run) -> list[Table]:
-    """Methods by key metrics, averaged over every rig; one table a part and pose."""
+    """Methods by key metrics, averaged over rigs, the one that ranks first; a table a part and pose."""
     return [
         _main_table(methods, pose)
         for part in run.parts
@@ -53,15 +56,22 @@ def _main_table(run: Run, pose: str) -> Table:
     ]
     found = standing(summaries_of(run, results, columns), results, run.catalogue)
     failing = any(not s.complete for s in found.summaries)
-    fields: list[tuple[Heading, list[Entry]]] = []
-    if found.ranks:
-        fields.append((_rank_heading(ranking), [_rank_entry(found, s) for s in found.summaries]))
-    rows = method_rows(found.summaries, columns, results, failing)
     heads = [*METHOD_HEADINGS, *map(heading, columns), *[NOT_OK_HEADING] * failing]
-    for head, entries in zip(heads, zip(*rows, strict=True), strict=True):
-        fields.append((head, list(entries)))
-        if head.key == ranking.key and (intervals := _interval_field(found.summaries, ranking)):
-            fields.append(intervals)
+    rows = method_rows(found.summaries, columns, results, failing)
+    fields = {
+        head.key: (head, list(entries)) for head, entries in zip(heads, zip(*rows, strict=True), strict=True)
+    }
+    first: list[_Field] = []
+    if found.ranks:
+        first.append((_rank_heading(ranking), [_rank_entry(found, s) for s in found.summaries]))
+    first.append(fields.pop("method"))
+    if ranking.key in fields:
+        head, entries = fields.pop(ranking.key)
+        first.append(
+            (head, [_ranked_entry(found, *own) for own in zip(found.summaries, entries, strict=True)])
+        )
+        first += filter(None, [_interval_field(found.summaries, ranking)])
+    placed = [*first, *fields.values()]
     scene = "scene" if run.has_truth else "photographed pair"
     told = [found.design, found.order, averages_text(results, columns, scene)]
     notes = [behind_text(found, run.catalogue), found.caveat, f"{PARTIAL}." if failing else ""]
@@ -71,8 +81,8 @@ def _main_table(run: Run, pose: str) -> Table:
         name=named(run, "main", pose),
         title=titled(run, f"Methods under the {pose} pose"),
         caption=" ".join(filter(None, told)),
-        headings=tuple(head for head, _ in fields),
-        sections=(Section("", tuple(zip(*(entries for _, entries in fields), strict=True))),),
+        headings=tuple(head for head, _ in placed),
+        sections=(Section("", tuple(zip(*(entries for _, entries in placed), strict=True))),),
         notes=tuple(filter(None, notes)),
     )
 
@@ -82,15 +92,29 @@ def _rank_heading(ranking: Column) -> Heading:
 
 
 def _rank_entry(found: Standing, summary: Summary) -> Entry:
-    text = found.ranks.get(summary.method, MISSING)
-    return Entry(text, text if text != MISSING else None)
+    places = found.ranks.get(summary.method)
+    if places is None:
+        return Entry(MISSING)
+    first, last = places
+    text = str(first) if first == last else f"{first}–{last}"
+    return Entry(text, text, beside={"first": float(first), "last": float(last)})
 
 
-def _interval_field(summaries: Sequence[Summary], column: Column) -> tuple[Heading, list[Entry]] | None:
+def _ranked_entry(found: Standing, summary: Summary, entry: Entry) -> Entry:
+    """The ranking number; why there is none on some pair, for the average over the others is no answer."""
+    why = found.behind.get(summary.method)
+    return (
+        entry if why is None else Entry(why, beside={k: v for k, v in entry.beside.items() if k == "count"})
+    )
+
+
+def _interval_field(summaries: Sequence[Summary], column: Column) -> _Field | None:
     """The intervals of the ranking column; None where the rigs are too few for any."""
     texts = [interval_text(s.averages[column.key], column) for s in summaries]
     if not any(texts):
         return None
-    meaning = f"Of {column.heading}, over rigs: where the mean over many more rigs of these kinds would lie."
-    head = Heading("95 % interval", f"{column.key}{INTERVAL}", meaning=meaning)
+    meaning = (
+        f"Of {column.heading}, {INTERVAL_LEVEL}: where the mean over many more rigs of these kinds would lie."
+    )
+    head = Heading("its interval", f"{column.key}{INTERVAL}", meaning=meaning, is_stored=False)
     return head, [Entry(text or MISSING, text or None) for text in texts]

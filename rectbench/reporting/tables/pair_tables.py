@@ -49,7 +49,7 @@ def _pair_table(run: Run, scene: str, rig: str, results: Sequence[Result]) -> Ta
         part=run.group,
         name=named(run, "pair", scene, rig),
         title=f"{scene} seen by {rig}",
-        caption="Every metric of every method; the best of each row is bold.",
+        caption="Every metric of every method; the best is bold where all are measured on the same pixels.",
         headings=(text_heading("metric"), *(Heading(method, method) for method in methods)),
         sections=tuple(sections),
     )

@@ -7,12 +7,13 @@ from dataclasses import replace
 
 from rectbench.plugins.metric import Column
 from rectbench.plugins.result import Result
-from rectbench.reporting.curves import KEPT, ranked_by, ranked_share, ranking_stem, view_key
+from rectbench.reporting.curves import ranked_by, ranked_share, ranking_stem, view_key
+from rectbench.reporting.footnotes import with_footnotes
 from rectbench.reporting.names import named, slug
 from rectbench.reporting.tables.captions import averages_text, capitalised, units_text
 from rectbench.reporting.tables.findings import reversals
-from rectbench.reporting.tables.numbers import MISSING, shown
-from rectbench.reporting.tables.standings import Standing, standing
+from rectbench.reporting.tables.numbers import MISSING
+from rectbench.reporting.tables.standings import KEEPS, Standing, lacking, standing
 from rectbench.reporting.tables.summaries import averaged
 from rectbench.reporting.tables.table import (
     Entry,
@@ -27,7 +28,7 @@ from rectbench.reporting.tables.table import (
 from rectbench.reporting.tables.tabulation import (
     ALL_MOTIONS,
     ALL_RIGS,
-    heading,
+    INTERVAL_LEVEL,
     interval_text,
     measured,
     methods_table,
@@ -37,70 +38,97 @@ from rectbench.reporting.tables.tabulation import (
 )
 from rectbench.runs.run import Run
 
-_KEPT = Column.share(KEPT, "view kept", "higher", "")
 _SHARES = (
-    "A share of the view is that of the source pixels nearest to its middle, the same for all methods; shown "
-    "is all that the method itself shows."
+    "A share of the view is that of the source pixels nearest to its middle, the same for all methods. "
+    "Shown, area and shape are over what each method itself shows, be it little, and name no best method."
 )
 _PROTOCOLS = (
-    "Of all that the method shows. Native: each method's own scale; rescaled: the one scale best for L; "
-    "stretched: the best scales of width and height."
+    "Over what each method itself shows, be it little, and so without a best one. Native: each method's own "
+    "scale; rescaled: the one scale best for L; stretched: the best scales of width and height."
 )
 
 
 def rig_table(run: Run) -> Table | None:
-    """The ranking column, a row a rig, a column a method; then the same for each motion. None for one rig."""
+    """The ranking column, a row a rig, a column a method; then the same for each motion. None for one rig.
+
+    Rigs stand in the order of their field of view.
+    """
     results, ranking = run.select(pose=run.geometric_pose), run.catalogue.ranking
     if len(run.rigs) < 2 or ranking.key not in run.metrics:
         return None
     found = standing(summaries_of(run, results, [ranking]), results, run.catalogue)
     methods = [s.method for s in found.summaries]
-    views = measured(run, [run.catalogue.column(view_key(ranked_share(run.catalogue)))])
+    share = ranked_share(run.catalogue)
+    views = measured(run, [run.catalogue.column(view_key(share))])
     rows = (*_rig_rows(run, results, methods, views), _mean_row(found, ranking, len(views)))
     sections = [Section(ALL_MOTIONS if len(run.motions) > 1 else "", rows)]
     if len(run.motions) > 1:
         by_motion = {motion: run.select(results, motion=motion) for motion in run.motions}
         sections += [Section(m, _rig_rows(run, own, methods, views)) for m, own in by_motion.items()]
-    has_gaps = any(
-        entry.text.startswith("(") for section in sections for row in section.rows for entry in row
+    view_heads = (
+        Heading("field of view [°]", view.key, meaning=f"Horizontal, of the {share} % of the view.")
+        for view in views
     )
-    gaps = "In brackets: the share of the view that a method keeps, where it has no number."
-    return Table(
+    table = Table(
         kind="rigs",
         part=run.group,
         name=named(run, "rigs"),
         title=titled(run, f"{capitalised(ranked_by(run.catalogue))}, rig by rig"),
-        caption=f"{run.geometric_pose.capitalize()} pose, pairs of a rig averaged. The last row over all is "
-        f"the average over {units_text(results)}, with its 95 % interval where they are three or more.",
-        headings=(text_heading("rig"), *map(heading, views), *(Heading(m, m) for m in methods)),
+        caption=_rig_caption(run, results, found, has_view=bool(views)),
+        headings=(text_heading("rig"), *view_heads, *(Heading(m, m) for m in methods)),
         sections=tuple(sections),
-        notes=(*reversals(found.values, ranking), *[gaps] * has_gaps),
+        notes=tuple(reversals(found.values, ranking)),
     )
+    return with_footnotes(table)
+
+
+def _rig_caption(run: Run, results: Sequence[Result], found: Standing, has_view: bool) -> str:
+    ranking, pose = run.catalogue.ranking, run.geometric_pose
+    told = [
+        f"A row is the average over the pairs of a rig, {pose} pose"
+        + ("; rigs of the narrowest view come first." if has_view else "."),
+        f"The last row is the {_rule(ranking)} over {units_text(results)}"
+        + (f", its {INTERVAL_LEVEL} interval in brackets." if _has_intervals(found, ranking) else "."),
+    ]
+    if any(why.startswith(KEEPS) for why in found.behind.values()):
+        told.append(f"“{KEEPS} N %” stands where a method shows N % of the view, too little for a number.")
+    return " ".join(told)
+
+
+def _has_intervals(found: Standing, ranking: Column) -> bool:
+    ranked = (s for s in found.summaries if s.method not in found.behind)
+    return any(interval_text(s.averages[ranking.key], ranking) for s in ranked)
+
+
+def _rule(ranking: Column) -> str:
+    return {"geometric": "geometric mean"}.get(ranking.average, "mean")
 
 
 def _rig_rows(
     run: Run, results: Sequence[Result], methods: Sequence[str], views: Sequence[Column]
 ) -> tuple[tuple[Entry, ...], ...]:
-    by_rig = {rig: run.select(results, rig=rig) for rig in run.rigs}
-    return tuple(_rig_row(run, rig, own, methods, views) for rig, own in by_rig.items() if own)
+    by_rig = {rig: own for rig in run.rigs if (own := run.select(results, rig=rig))}
+
+    def width(rig: str) -> float:
+        return sum(averaged(view, by_rig[rig]).value or 0.0 for view in views)
+
+    return tuple(_rig_row(run, rig, by_rig[rig], methods, views) for rig in sorted(by_rig, key=width))
 
 
 def _rig_row(
     run: Run, rig: str, results: Sequence[Result], methods: Sequence[str], views: Sequence[Column]
 ) -> tuple[Entry, ...]:
     ranking = run.catalogue.ranking
-    entries = [_value_or_kept(run.select(results, method=m), ranking) for m in methods]
+    entries = [_value_or_why_none(run.select(results, method=m), ranking) for m in methods]
     whole = [entry.value is not None for entry in entries]
     fields_of_view = (number(averaged(view, results).value, view) for view in views)
     return words(rig), *fields_of_view, *with_best(entries, ranking, whole)
 
 
-def _value_or_kept(results: Sequence[Result], ranking: Column) -> Entry:
-    """The value where all pairs have one; else how much of the view is kept, in brackets."""
-    found, kept = averaged(ranking, results), averaged(_KEPT, results)
-    if results and found.count == len(results):
-        return number(found.value, ranking)
-    return Entry(MISSING if kept.value is None else f"({shown(kept.value, _KEPT)}\u00a0%)")
+def _value_or_why_none(results: Sequence[Result], ranking: Column) -> Entry:
+    """The value where all pairs have one; else how much of the view is kept, or what else is amiss."""
+    why = lacking(results, ranking) if results else MISSING
+    return Entry(why) if why else number(averaged(ranking, results).value, ranking)
 
 
 def _mean_row(found: Standing, ranking: Column, views: int) -> tuple[Entry, ...]:
@@ -112,8 +140,7 @@ def _mean_row(found: Standing, ranking: Column, views: int) -> tuple[Entry, ...]
             entries.append(Entry(MISSING))
         else:
             entries.append(number(mean.value, ranking, f" ({within})" if within else ""))
-    rule = {"geometric": "geometric mean"}.get(ranking.average, "mean")
-    return words(rule), *[Entry("")] * views, *entries
+    return words(_rule(ranking)), *[Entry("")] * views, *entries
 
 
 def distortion_tables(run: Run) -> Iterator[Table]:

@@ -6,17 +6,21 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from rectbench.metrics.row_misfit import LARGEST_BEND_PX, LARGEST_MISFIT_PX
 from rectbench.plugins.catalogue import Catalogue
 from rectbench.plugins.metric import Column
 from rectbench.plugins.result import Result
 from rectbench.reporting.curves import KEPT, ranked_by, ranked_share
-from rectbench.reporting.tables.captions import listed
-from rectbench.reporting.tables.numbers import three_digits
+from rectbench.reporting.tables.captions import capitalised, counted, listed
+from rectbench.reporting.tables.numbers import MISSING, two_digits
 from rectbench.reporting.tables.summaries import Summary, averaged
 from rectbench.runs.units import by_rig, floor_of
 from rectbench.statistics.ranking import Ranking, rank, signed_rank_caveat
 
 _KEPT = Column(KEPT, "view kept")
+ROW_LIMITS_PX = {"row_bend_px": LARGEST_BEND_PX, "row_misfit_px": LARGEST_MISFIT_PX}
+"""The columns of how far a map puts rows off, and beyond what it is no rectification."""
+ROWS_OFF, KEEPS = "rows off by", "keeps"
 _TWICE = 2.0
 """Ratios up to this are told as a difference in percent, larger ones as a factor."""
 
@@ -29,19 +33,19 @@ class Standing:
     ----------
     summaries : in their order: by the ranking column, behind them those without a number on every pair, the
         fewer failures and the more of the view they keep the nearer.
-    ranks : the first and the last place of each method, as a reader sees them; empty where nothing is told.
+    ranks : the first and the last place of each method; empty where nothing is told.
     design : what these rigs can tell apart, a sentence.
     order : by what the methods stand in their order, a sentence.
-    behind : the methods without a number on every pair.
+    behind : why each of the methods without a number on every pair has none, such as "keeps 43 %".
     values : of the others, by method and rig.
     caveat : what the rigs are too few for; empty where they are not.
     """
 
     summaries: tuple[Summary, ...]
-    ranks: Mapping[str, str]
+    ranks: Mapping[str, tuple[int, int]]
     design: str
     order: str
-    behind: tuple[str, ...]
+    behind: Mapping[str, str]
     values: Mapping[str, Mapping[str, float]]
     caveat: str
 
@@ -53,49 +57,50 @@ def standing(summaries: Sequence[Summary], results: Sequence[Result], catalogue:
     found = rank(values, floor=floor_of(column), unit="rig")
     rigs = {rig for numbers in values.values() for rig in numbers}
     behind = set(found.behind)
+    own = {method: [r for r in results if r.method == method] for method in values}
 
-    def nearness(summary: Summary) -> tuple[bool, int, int, float, str]:
+    def nearness(summary: Summary) -> tuple[bool, int, int, int, float, str]:
         method = summary.method
         if method not in behind:
-            return False, found.order.index(method), 0, 0.0, method
-        kept = averaged(_KEPT, [r for r in results if r.method == method]).value or 0.0
-        return True, summary.failed, -len(values[method]), -kept, method
+            return False, found.order.index(method), 0, 0, 0.0, method
+        kept = averaged(_KEPT, own[method]).value or 0.0
+        return True, sum(map(is_misfit, own[method])), summary.failed, -len(values[method]), -kept, method
 
     ordered = tuple(sorted(summaries, key=nearness))
     is_of_view = bool(rigs) or any(KEPT in r.metrics for r in results)
     return Standing(
         summaries=ordered,
-        ranks={method: _rank_text(*places) for method, places in found.ranks.items()},
+        ranks=found.ranks,
         design=_design_text(found) if rigs else "",
         order=_order_text(found, catalogue) if len(behind) < len(ordered) else "",
-        behind=tuple(s.method for s in ordered if is_of_view and s.method in behind),
+        behind={
+            s.method: lacking(own[s.method], column) for s in ordered if is_of_view and s.method in behind
+        },
         values={s.method: values[s.method] for s in ordered if s.method not in behind},
         caveat=f"{caveat}." if (caveat := signed_rank_caveat(found.units, "rig")) and found.ranks else "",
     )
 
 
-def _rank_text(first: int, last: int) -> str:
-    return str(first) if first == last else f"{first}–{last}"
-
-
 def _design_text(found: Ranking) -> str:
     if found.reason:
-        return f"{found.reason[0].upper()}{found.reason[1:]}."
+        return f"{capitalised(found.reason)}."
     if found.resolves is None:
         return ""
-    left_out = f" of {found.of} rigs, which all ranked methods serve," * (found.units < found.of) or " rigs"
+    rigs = f"{found.units} rigs"
+    if found.units < found.of:
+        rigs = f"{found.units} of {found.of} rigs, which all ranked methods serve,"
     return (
-        f"These {found.units}{left_out} tell two methods apart, in four cases of five, from "
-        f"{_ratio_text(found.resolves)} on; a rank is an interval where they tell no more."
+        f"{_ratio_text(found.resolves)} between two methods shows on {rigs} in four cases of five; where no "
+        "difference shows, methods share their places, such as 1–2."
     )
 
 
 def _ratio_text(ratio: float) -> str:
     if not math.isfinite(ratio):
-        return "no difference"
+        return "No difference"
     if ratio < _TWICE:
-        return f"a difference of {three_digits(100 * (ratio - 1))} %"
-    return f"a factor of {three_digits(ratio)}"
+        return f"A difference of {two_digits(100 * (ratio - 1))} %"
+    return f"A factor of {two_digits(ratio)}"
 
 
 def _order_text(found: Ranking, catalogue: Catalogue) -> str:
@@ -104,12 +109,58 @@ def _order_text(found: Ranking, catalogue: Catalogue) -> str:
 
 def behind_text(found: Standing, catalogue: Catalogue) -> str:
     """Why methods stand below the others without a rank; empty where none does."""
-    share, names = ranked_share(catalogue), listed(found.behind)
+    share = ranked_share(catalogue)
     if not found.behind:
         return ""
     if share is None:
-        return f"Without {catalogue.ranking.heading} on every pair, and so without a rank: {names}."
-    return (
-        f"Not ranked, for they show less than {share} % of the view on some pair, or nothing: {names}. "
-        "They stand below, by how much they keep."
-    )
+        return (
+            f"Without {catalogue.ranking.heading} on every pair, and so without a rank: "
+            f"{listed(list(found.behind))}."
+        )
+    crooked = [method for method, why in found.behind.items() if why.startswith(ROWS_OFF)]
+    short = [method for method in found.behind if method not in crooked]
+    told = []
+    if short:
+        told.append(
+            f"Not ranked, for they show less than {share} % of the view on some pair, or nothing: "
+            f"{listed(short)}; they stand below by how much of it they keep."
+        )
+    if crooked:
+        told.append(
+            f"Not ranked, for their rows are no epipolar planes of the rig, which is no rectification: "
+            f"{listed(crooked)}."
+        )
+    return " ".join(told)
+
+
+def is_misfit(result: Result) -> bool:
+    """Whether the map is no rectification of the pair."""
+    return any(result.metrics.get(key, 0.0) > limit for key, limit in ROW_LIMITS_PX.items())
+
+
+def _rows_off_px(result: Result) -> float:
+    return max(result.metrics.get(key, 0.0) for key in ROW_LIMITS_PX)
+
+
+def lacking(results: Sequence[Result], column: Column) -> str:
+    """Why a method has no number of a column on all of these pairs, and on how many where it has some.
+
+    "rows off by 3.4 px" is the worst of them, "keeps 43 % on 2 of 12" the mean of the two, in whole percent
+    downwards. Empty where every pair has a number, a dash where nothing is known of those without.
+    """
+    without = [r for r in results if column.key not in r.metrics]
+    if not without:
+        return ""
+    crooked = [r for r in without if is_misfit(r)]
+    kept = [r for r in without if r.metrics.get(KEPT, 1.0) < 1]
+    failed = [r for r in without if not r.ok]
+    if crooked:
+        said, about = f"{ROWS_OFF} {two_digits(max(map(_rows_off_px, crooked)))} px", crooked
+    elif kept:
+        share = math.fsum(r.metrics[KEPT] for r in kept) / len(kept)
+        said, about = f"{KEEPS}\u00a0{math.floor(100 * share + 1e-6)}\u00a0%", kept
+    elif failed:
+        return f"{counted(len(failed), 'cell')} failed"
+    else:
+        return MISSING
+    return said if len(about) == len(results) else f"{said} on {len(about)} of {len(results)}"

@@ -17,6 +17,19 @@ _LARGEST_LOG = 709.0
 """Of numbers that a float can hold."""
 
 
+_FEW_RIGS, _WIDEST = 6, 4.0
+"""With fewer rigs, an interval whose ends are a larger factor apart tells nothing worth printing."""
+
+
+def is_too_wide(interval: Interval) -> bool:
+    """Whether an interval over few rigs is so wide that only their number is worth telling.
+
+    >>> is_too_wide(Interval(0.2, 0.04, 1.2, 3)), is_too_wide(Interval(0.2, 0.04, 1.2, 12))
+    (True, False)
+    """
+    return interval.units < _FEW_RIGS and interval.high > _WIDEST * max(interval.low, 0.0)
+
+
 _Label = tuple[str, str, str, str, int]
 """Of a cell: rig, motion, scene, pose, seed."""
 

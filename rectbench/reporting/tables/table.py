@@ -9,8 +9,8 @@ import csv
 import io
 import re
 import textwrap
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cache, lru_cache
 
 from jinja2 import Environment, PackageLoader, Template
@@ -18,6 +18,7 @@ from pylatexenc.latexencode import RULE_REGEX, UnicodeToLatexConversionRule, Uni
 from tabulate import tabulate
 
 from rectbench.plugins.metric import Column
+from rectbench.reporting.shares import is_of_own_view
 from rectbench.reporting.tables.numbers import MISSING, shown
 
 
@@ -25,7 +26,8 @@ from rectbench.reporting.tables.numbers import MISSING, shown
 class Entry:
     """One field: what is read (`text`), what is sorted and stored (`value`), and how it stands out.
 
-    `hint` is what the page tells under the pointer.
+    `hint` is what the page tells under the pointer; `beside` are numbers that only the CSV holds, in columns
+    of their own, by what their names end with.
     """
 
     text: str
@@ -33,24 +35,33 @@ class Entry:
     best: bool = False
     failed: bool = False
     hint: str = ""
+    beside: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def stored(self) -> str:
         """The field in CSV: full numbers, nothing where there is none."""
-        if isinstance(self.value, float):
-            return f"{self.value:.9g}"
-        return "" if self.value is None else str(self.value)
+        return _stored(self.value)
 
 
 @dataclass(frozen=True)
 class Heading:
-    """A column's head: what is read, its name in CSV, whether it holds numbers, or sentences to wrap."""
+    """A column's head: what is read, its name in CSV, whether it holds numbers, or sentences to wrap.
+
+    One that is not stored repeats for readers what the CSV holds beside another column.
+    """
 
     text: str
     key: str
     numeric: bool = True
     meaning: str = ""
     wraps: bool = False
+    is_stored: bool = True
+
+
+def _stored(value: float | str | None) -> str:
+    if isinstance(value, float):
+        return f"{value:.9g}"
+    return "" if value is None else str(value)
 
 
 def text_heading(text: str, key: str = "", wraps: bool = False) -> Heading:
@@ -107,6 +118,7 @@ def whole(count: int) -> Entry:
 def with_best(entries: Sequence[Entry], shown_as: Column, eligible: Sequence[bool]) -> list[Entry]:
     """`entries` of one metric with the best eligible ones marked.
 
+    None is where each method's number is over what it shows itself: showing less is no merit.
     Values that read the same tie, and where all read the same nothing is marked: a difference that
     is not shown is no merit.
     """
@@ -115,7 +127,7 @@ def with_best(entries: Sequence[Entry], shown_as: Column, eligible: Sequence[boo
         for entry, may_win in zip(entries, eligible, strict=True)
         if may_win and isinstance(entry.value, float)
     ]
-    if shown_as.better is None or len({text for _, text in competing}) < 2:
+    if shown_as.better is None or is_of_own_view(shown_as) or len({text for _, text in competing}) < 2:
         return list(entries)
     winner = (min if shown_as.better == "lower" else max)(competing)[1]
     return [
@@ -127,13 +139,23 @@ def with_best(entries: Sequence[Entry], shown_as: Column, eligible: Sequence[boo
 def to_csv(table: Table) -> str:
     """Full numbers in stored units under the rows' own column names; sections become a first column."""
     titled = any(section.title for section in table.sections)
+    titles = [section.title for section in table.sections for _ in section.rows]
+    columns = [("section", titles)] if titled else []
+    columns += [column for place in range(len(table.headings)) for column in _stored_columns(table, place)]
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
-    writer.writerow(["section"] * titled + [heading.key for heading in table.headings])
-    for section in table.sections:
-        for row in section.rows:
-            writer.writerow([section.title] * titled + [entry.stored for entry in row])
+    writer.writerow([name for name, _ in columns])
+    writer.writerows(zip(*(fields for _, fields in columns), strict=True))
     return out.getvalue()
+
+
+def _stored_columns(table: Table, place: int) -> Iterator[tuple[str, list[str]]]:
+    """A column by name as the CSV has it, and behind it those of the numbers beside its entries."""
+    heading, entries = table.headings[place], [row[place] for row in table.rows]
+    if heading.is_stored:
+        yield heading.key, [entry.stored for entry in entries]
+    for end in dict.fromkeys(end for entry in entries for end in entry.beside):
+        yield f"{heading.key}_{end}", [_stored(entry.beside.get(end)) for entry in entries]
 
 
 def to_markdown(table: Table) -> str:

@@ -9,11 +9,14 @@ from dataclasses import replace
 from rectbench.plugins.metric import Column
 from rectbench.plugins.result import Result
 from rectbench.reporting.asked import part_title
-from rectbench.reporting.tables.numbers import MISSING, shown
-from rectbench.reporting.tables.summaries import Averaged, Summary, summarise
+from rectbench.reporting.shares import reads
+from rectbench.reporting.tables.captions import counted
+from rectbench.reporting.tables.numbers import MISSING, shown_roughly
+from rectbench.reporting.tables.summaries import Averaged, Summary, is_too_wide, summarise
 from rectbench.reporting.tables.table import Entry, Heading, Section, Table, number, text_heading, with_best
 from rectbench.runs.run import Run
 
+INTERVAL_LEVEL = "95 % confidence"
 METHOD_HEADINGS = text_heading("method"), Heading("ok", "ok", meaning="Cells measured of cells planned.")
 NOT_OK_HEADING = Heading("not ok", "not_ok", numeric=False, meaning="How the other cells ended.")
 
@@ -89,15 +92,21 @@ def heading(shown_as: Column) -> Heading:
 def head_text(shown_as: Column) -> str:
     """Heading, unit and arrow."""
     arrow = {"lower": "\u00a0↓", "higher": "\u00a0↑", None: ""}[shown_as.better]
-    return shown_as.full_heading + arrow
+    unit = f" [{shown_as.unit}]" if shown_as.unit else ""
+    return reads(shown_as) + unit + arrow
 
 
 def interval_text(averaged: Averaged, shown_as: Column) -> str:
-    """The interval of an average, in the column's shown unit; empty where the rigs are too few for one."""
+    """The interval of an average, in the column's shown unit, or that it is too wide to tell anything.
+
+    Empty where there is none: over two rigs, of a maximum, of infinite values.
+    """
     found = averaged.interval
     if found is None or not math.isfinite(found.low):
         return ""
-    return f"{shown(found.low, shown_as)}–{shown(found.high, shown_as)}"
+    if is_too_wide(found):
+        return f"{counted(found.units, 'rig')}: too few to tell"
+    return f"{shown_roughly(found.low, shown_as)}–{shown_roughly(found.high, shown_as)}"
 
 
 def _ok_entry(summary: Summary) -> Entry:
@@ -113,12 +122,22 @@ def _not_ok_entry(summary: Summary, results: Sequence[Result]) -> Entry:
 
 def _averaged_field(summaries: Sequence[Summary], shown_as: Column) -> list[Entry]:
     """One metric down the methods. Averages over fewer cells than planned compete for no prize."""
+    of_methods = [summary.averages[shown_as.key] for summary in summaries]
+    is_partial = any(a.count < s.cells for a, s in zip(of_methods, summaries, strict=True))
     entries = []
-    for summary in summaries:
-        averaged = summary.averages[shown_as.key]
+    for summary, averaged in zip(summaries, of_methods, strict=True):
         short = averaged.count < summary.ok
         entry = number(averaged.value, shown_as, f" ({averaged.count}/{summary.cells})" if short else "")
         within = interval_text(averaged, shown_as)
-        entries.append(replace(entry, hint=f"95 % interval {within}" if within else ""))
+        hint = f"{INTERVAL_LEVEL} interval: {within}" if within else ""
+        entries.append(replace(entry, hint=hint, beside=_beside(averaged, is_partial)))
     eligible = [s.complete and s.averages[shown_as.key].count == s.cells for s in summaries]
     return with_best(entries, shown_as, eligible)
+
+
+def _beside(averaged: Averaged, is_partial: bool) -> dict[str, float]:
+    """What the CSV tells of an average: the ends of its interval; over how many cells, where any lack one."""
+    found = averaged.interval
+    told = {} if found is None else {"low": found.low, "high": found.high}
+    told = {end: value for end, value in told.items() if math.isfinite(value)}
+    return {**told, **({"count": float(averaged.count)} if is_partial else {})}
