@@ -25,6 +25,7 @@ from rectbench.statistics.intervals import (
     ALPHA,
     Interval,
     count_interval,
+    counted,
     geometric_interval,
     mean_interval,
     nested_means,
@@ -138,12 +139,12 @@ def _averaged(statement: Statement, by_rig: Mapping[str, float]) -> _Judgement:
     least, most = statement.bounds
     held = sum(least <= value <= most for value in by_rig.values())
     if math.isnan(interval.low):
-        return interval, held, "undecided", f"{_rigs(len(by_rig))}: too few for an interval"
+        return interval, held, "undecided", f"{counted(len(by_rig), 'rig')}: too few for an interval"
     if interval.high < least or interval.low > most:
         return interval, held, "not held", ""
     if least <= interval.low and interval.high <= most:
         return interval, held, "held", ""
-    return interval, held, "undecided", f"{_rigs(len(by_rig))}: the interval reaches beyond a bound"
+    return interval, held, "undecided", f"{counted(len(by_rig), 'rig')}: the interval reaches beyond a bound"
 
 
 def _counted(statement: Statement, by_rig: Mapping[str, float]) -> _Judgement:
@@ -161,14 +162,10 @@ def _counted(statement: Statement, by_rig: Mapping[str, float]) -> _Judgement:
     if as_few < ALPHA:
         verdict = "not held"
     elif rigs < needed:
-        remark = f"{_rigs(rigs)} of the {needed} that it speaks of"
+        remark = f"{counted(rigs, 'rig')} of the {needed} that it speaks of"
     elif least / rigs >= claimed:
         verdict, remark = "held", f"as many by chance: p = {by_chance:.2g}"
     return count_interval(least, rigs), least, verdict, remark
-
-
-def _rigs(count: int) -> str:
-    return f"{count} rig" if count == 1 else f"{count} rigs"
 
 
 @dataclass(frozen=True)

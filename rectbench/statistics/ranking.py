@@ -129,7 +129,7 @@ def _why_none(compared: Sequence[str], behind: Sequence[str], units: int, unit: 
     if units < LEAST_UNITS:
         return f"{counted(units, unit)}: too few to tell methods apart"
     if len(compared) == 1:
-        return f"{compared[0]} alone has a number on each {unit}: none to compare it with"
+        return f"only {compared[0]} has a number on each {unit}: none to compare it with"
     return ""
 
 

@@ -161,7 +161,7 @@ def test_where_each_method_lacks_a_unit_none_is_ranked() -> None:
 def test_a_method_alone_has_no_rank() -> None:
     ranking = rank({"a": {0: 1.0, 1: 2.0, 2: 3.0}}, unit="rig")
     assert (ranking.order, ranking.ranks, ranking.resolves) == (("a",), {}, None)
-    assert ranking.reason == "a alone has a number on each rig: none to compare it with"
+    assert ranking.reason == "only a has a number on each rig: none to compare it with"
 
 
 EASY, HARD = tuple(range(11)), 11
@@ -203,7 +203,7 @@ def test_no_method_wins_by_failing_on_the_hardest_unit(height: float) -> None:
 def test_of_two_methods_neither_is_ranked_where_one_fails_on_a_unit(height: float) -> None:
     two = rank({"a": level(1.0), "b": level(height, EASY)})
     assert (two.order, two.behind, two.ranks) == (("a", "b"), ("b",), {})
-    assert two.reason == "a alone has a number on each unit: none to compare it with"
+    assert two.reason == "only a has a number on each unit: none to compare it with"
 
 
 def test_who_fails_on_a_unit_that_is_left_out_is_not_told_to_be_better_than_who_does_not() -> None:
@@ -215,7 +215,7 @@ def test_who_fails_on_a_unit_that_is_left_out_is_not_told_to_be_better_than_who_
 def test_a_method_that_serves_few_units_is_ranked_with_none() -> None:
     few = rank({"wide": level(1.0), "narrow": level(0.1, EASY[:4])}, unit="rig")
     assert (few.order, few.behind, few.ranks) == (("wide", "narrow"), ("narrow",), {})
-    assert few.reason == "wide alone has a number on each rig: none to compare it with"
+    assert few.reason == "only wide has a number on each rig: none to compare it with"
     several = {"narrow": level(0.1, EASY[:4]), "narrower": level(0.2, EASY[:4])}
     assert rank({"wide": level(1.0), **several}).ranks == {}
 
