@@ -35,7 +35,7 @@ COVERED = 0.95
 NEAREST = 0.1
 """Distance, baselines, that no point comes nearer than: steps of one at an epipole may go anywhere."""
 MEASURED = 2
-"""Times that leverage is measured. A third time would cost 3 % of the direction's accuracy and gain little."""
+"""Times that leverage is measured. A third would cost 3 % of the direction's accuracy and gain little."""
 
 
 @dataclass(frozen=True, eq=False)

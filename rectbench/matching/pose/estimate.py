@@ -53,7 +53,7 @@ POSE_PER_CELL = 10
 WITHIN_DEVIATIONS = 4.0
 """A match farther off than this many times the noise is an outlier."""
 MEDIANS_WORTH = 0.37
-"""Efficiency of the median of absolute deviations: what a normal distance adds to the noise's degrees of freedom."""
+"""What a normal distance adds to the noise's degrees of freedom, where their median tells it."""
 FINEST_PX = 1e-3
 """What exact matches are taken to be exact to."""
 CONTRADICTING_DEG = 30.0
