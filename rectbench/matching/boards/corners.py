@@ -38,8 +38,8 @@ SEARCHES = (
 """Searches in their turn: how much larger the image is made, the grid to begin with, and OpenCV's flags. Of a
 bent board it misorders some grids; far and tilted ones before a busy background only the last two find."""
 ABOUT, SIZES_ABOUT, SIDE_ABOUT, MOST_ENLARGED = 3.0, ((4, 4), (6, 5)), 30.0, 4.0
-"""Where a grid found is no whole board, it is searched for once more: so many squares about it, enlarged until
-a side has so many px, or by the last. Of small squares OpenCV misses some, and takes background for others."""
+"""Where a grid found is no whole board, it is searched for once more: so many squares about it, enlarged
+until a side has so many px, or by the last. Of small squares OpenCV misses some, or takes others for them."""
 LEAST_ROWS = 3
 """Corners along a side of the grid from which on it may grow."""
 LEAST_CORNERS = 20
