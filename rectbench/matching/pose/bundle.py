@@ -150,6 +150,10 @@ class Equations:
         the mean ψ² over the square of ψ's mean slope, of n - 5 degrees of freedom and with the factor for
         few matches of Huber, Robust Statistics, 1981, 7.6. It is known from n matches alone, and the region
         of 95 % confidence is that of F: the covariance is enlarged until χ²'s is as large.
+
+        Of simulated poses (30 to 300 matches; a perspective and a 190° lens; normal errors, Student's t of 3
+        degrees, a tenth of the matches five times as noisy) 0.932 to 0.966 lie in it: of 2,000 poses of each
+        kind up to 60 matches, of 500 beyond.
         """
         count = int(self.seen.sum())
         weights, freedom = self.residual_weights[self.seen], max(count - PARAMETERS, 1)
