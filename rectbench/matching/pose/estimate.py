@@ -268,8 +268,8 @@ def _outlying_px(noise_px: float, count: int) -> float:
     matches off, and what is left would look too exact. So it is Student's t that tells what is as rare.
     """
     freedom = MEDIANS_WORTH * max(count - PARAMETERS, 1)
-    deviations = float(-stdtrit(freedom, ndtr(-WITHIN_DEVIATIONS)))
-    return deviations * max(noise_px, FINEST_PX)
+    rarity = float(ndtr(-WITHIN_DEVIATIONS))
+    return float(-stdtrit(freedom, rarity)) * max(noise_px, FINEST_PX)
 
 
 def _refuse_few(count: int, given: int) -> None:

@@ -161,12 +161,12 @@ def depth_consistent(pose: Pose, matches: RayMatches, limit_px: float) -> BoolAr
 
     Of 11,345 matches that fit the pose in 16 rendered pairs 84 are wrong: 10 of these are dropped, and 0.9 %
     of the others; the poses' errors are 0.98 ± 0.03 (rotation) and 0.93 ± 0.06 (direction) of what they were,
-    the geometric mean. Of 300 matches before a curved surface, a tenth of them wrong, 46 to 64 % of the wrong
-    ones are dropped, and up to 0.4 % of the others. What the pose gains depends on what is wrong with them
-    (80 pairs each, with a perspective and a 190° lens): spread over 3 px to either side of the epipolar line
-    they are errors of the pose, which shrinks to 0.79 and 0.95 (rotation), 0.74 and 0.91 (direction); right on
-    the line, and no noisier across it than others, they tell the pose as right ones do, and near ones tell
-    much: it gets worse, by 4 % (rotation) and 21 and 4 % (direction).
+    the geometric mean. Of 300 matches before a curved surface, a tenth of them wrong (80 simulated pairs for
+    a perspective lens, 80 for one of 190°), 46 to 64 % of the wrong ones are dropped, and up to 0.4 % of the
+    others. What the pose gains depends on the wrong ones. Spread over 3 px to either side of the epipolar
+    line they mislead it: its errors shrink to 0.79 and 0.95 (rotation), 0.74 and 0.91 (direction). Exactly on
+    the line, but for the noise of all, they tell the pose as well as right ones, and near ones tell much: it
+    gets worse without, by 4 % (rotation), 21 and 4 % (direction).
     """
     if len(matches) <= NEIGHBOURS:
         return np.ones(len(matches), bool)
