@@ -19,6 +19,9 @@ from tests.rigs_for_tests import rig
 FISHEYE = rig("kannala-brandt", size=(560, 360), fov_deg=140)
 _LENS = rb.Camera("pinhole", (560, 360), {"fx": 380.0, "fy": 380.0, "cx": 279.0, "cy": 181.0})
 PINHOLE = replace(FISHEYE, left=_LENS, right=_LENS)
+LARGER_FISHEYE = rig("kannala-brandt", size=(640, 480), fov_deg=140)
+_LARGER_LENS = rb.Camera("pinhole", (640, 480), {"fx": 430.0, "fy": 430.0, "cx": 319.0, "cy": 241.0})
+LARGER_PINHOLE = replace(LARGER_FISHEYE, left=_LARGER_LENS, right=_LARGER_LENS)
 
 
 def found_in(seen: Seen, kind: str) -> np.ndarray:
@@ -62,6 +65,36 @@ def test_a_board_is_found_in_any_pose_before_a_busy_background(
     off = found_in(seen, f"chessboard {columns - 1}x{rows - 1}")
     assert len(off) == (columns - 1) * (rows - 1)
     # With four samples a pixel an edge is a comb.
+    assert np.sqrt((off**2).mean()) < 0.2
+
+
+@pytest.mark.parametrize(
+    ("lens", "width_m", "distance_m", "turn_deg", "margin", "busy"),
+    [
+        (LARGER_PINHOLE, 0.3, 1.0779, (32.393, -46.306, 11.401), 40, True),
+        (LARGER_FISHEYE, 0.5, 0.8358, (-54.939, 46.034, 5.932), 4, False),
+    ],
+    ids=["pinhole", "fisheye"],
+)
+def test_a_board_is_found_although_its_squares_are_but_eight_pixels_high(
+    lens: rb.Rig,
+    width_m: float,
+    distance_m: float,
+    turn_deg: tuple[float, float, float],
+    margin: int,
+    busy: bool,
+) -> None:
+    seen = seen_board(
+        lens,
+        chessboard(8, 6, margin=margin),
+        width_m=width_m,
+        distance_m=distance_m,
+        turn_deg=turn_deg,
+        before=sphere_pair(lens, 5) if busy else None,
+        samples=2,
+    )
+    off = found_in(seen, "chessboard 7x5")
+    assert len(off) == 35
     assert np.sqrt((off**2).mean()) < 0.2
 
 

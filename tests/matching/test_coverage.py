@@ -12,7 +12,7 @@ from scipy.special import chdtri
 
 import rectbench as rb
 from rectbench.matching import relative_pose
-from rectbench.matching.pose.bundle import adjusted
+from rectbench.matching.pose.bundle import Adjusted, adjusted
 from rectbench.matching.pose.epipolar import Pose, RayMatches, tangents
 from tests.rigs_for_tests import rig
 
@@ -57,11 +57,17 @@ def squared_distance(rig: rb.Rig, pose: Pose, covariance: np.ndarray) -> float:
     return float(off @ np.linalg.solve(covariance, off))
 
 
+def adjusted_to(rig: rb.Rig, pixels: np.ndarray) -> Adjusted:
+    """The pose adjusted to matches [2, N, 2], from the true one."""
+    matches, _ = RayMatches.of(rig.left, rig.right, rb.Matches(*pixels))
+    start = Pose(rig.R_right_left, rig.t_right_left / rig.baseline_m)
+    return adjusted(rig.left, rig.right, start, matches)
+
+
 def adjusted_distance(rig: rb.Rig, noise: Noise, count: int, seed: int) -> float:
     rng = np.random.default_rng((seed, count))
     exact = seen_points(rig, count, rng)
-    matches, _ = RayMatches.of(rig.left, rig.right, rb.Matches(*exact + noise(rng, exact.shape)))
-    found = adjusted(rig.left, rig.right, Pose(rig.R_right_left, rig.t_right_left / rig.baseline_m), matches)
+    found = adjusted_to(rig, exact + noise(rng, exact.shape))
     return squared_distance(rig, found.pose, found.covariance)
 
 
@@ -98,6 +104,39 @@ def test_so_does_that_of_a_pose_found_among_matches(name: str) -> None:
         inside.append(squared_distance(lens, pose, across.T @ found.covariance @ across) < REGION)
     # 100 poses tell a share of 95 % to 2 %.
     assert 0.90 <= np.mean(inside) <= 0.99
+
+
+def test_a_match_that_only_seems_near_does_not_make_the_direction_look_sure() -> None:
+    """Two degrees off the epipole few pixels bring a far point next to the camera, on its epipolar line."""
+    lens, count = RIGS["fisheye"], 30
+    baseline = -lens.R_right_left.T @ lens.t_right_left
+    ray = baseline / lens.baseline_m + np.radians(2) * tangents(baseline / lens.baseline_m)[:, 0]
+    near = np.stack(
+        [lens.left.project(ray)[0], lens.right.project(lens.right_from_left(0.5 * lens.baseline_m * ray))[0]]
+    )
+    ratios = []
+    for seed in range(8):
+        rng = np.random.default_rng((seed, count))
+        exact = seen_points(lens, count, rng)
+        noisy = exact + normal(rng, exact.shape)
+        sigmas = [
+            np.sqrt(np.trace(adjusted_to(lens, pixels).covariance[3:, 3:]))
+            for pixels in (noisy, np.concatenate([noisy, near[:, None]], axis=1))
+        ]
+        ratios.append(sigmas[1] / sigmas[0])
+    # With leverage measured once, it is 0.44.
+    assert np.mean(ratios) > 0.55
+
+
+def test_of_few_matches_none_is_cut_off_for_a_noise_that_came_out_small() -> None:
+    lens, kept = RIGS["fisheye"], []
+    for seed in range(30):
+        rng = np.random.default_rng((seed, 30))
+        exact = seen_points(lens, 30, rng)
+        found = relative_pose(lens.left, lens.right, rb.Matches(*exact + contaminated(rng, exact.shape)))
+        kept.append(len(found.inliers.left) / 30)
+    # At four deviations of the noise as estimated it is 0.952.
+    assert np.mean(kept) > 0.965
 
 
 @pytest.mark.parametrize("name", RIGS)

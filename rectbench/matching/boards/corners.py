@@ -28,14 +28,18 @@ NEIGHBOURS, AGREEMENT_STEPS = 12, 10
 """Neighbours of a tag's corner that predict its place, and steps of the robust fit to them."""
 AGREEING_PX, WITHIN_MEDIANS = 0.5, 4.0
 """A corner farther off than both, the latter times the median, is not the same in both images."""
+EXHAUSTIVE = cv2.CALIB_CB_LARGER | cv2.CALIB_CB_EXHAUSTIVE
 SEARCHES = (
     (1.0, (4, 4), cv2.CALIB_CB_LARGER),
     (1.0, (6, 5), cv2.CALIB_CB_LARGER),
-    (1.0, (4, 4), cv2.CALIB_CB_LARGER | cv2.CALIB_CB_EXHAUSTIVE),
-    (1.5, (4, 4), cv2.CALIB_CB_LARGER | cv2.CALIB_CB_EXHAUSTIVE),
+    (1.0, (4, 4), EXHAUSTIVE),
+    (1.5, (4, 4), EXHAUSTIVE),
 )
 """Searches in their turn: how much larger the image is made, the grid to begin with, and OpenCV's flags. Of a
 bent board it misorders some grids; far and tilted ones before a busy background only the last two find."""
+ABOUT, SIZES_ABOUT, SIDE_ABOUT, MOST_ENLARGED = 3.0, ((4, 4), (6, 5)), 30.0, 4.0
+"""Where a grid found is no whole board, it is searched for once more: so many squares about it, enlarged
+until a side has so many px, or by the last. Of small squares OpenCV misses some, or takes others for them."""
 LEAST_ROWS = 3
 """Corners along a side of the grid from which on it may grow."""
 LEAST_CORNERS = 20
@@ -189,20 +193,39 @@ def _chessboard_matches(left: Grey, right: Grey) -> BoardMatches | None:
 def _chessboard(image: Grey) -> _Chessboard | None:
     """The one whole chessboard in the image, if there is one."""
     reduction = min(1.0, np.sqrt(SEARCHED_PIXELS / image.size))
-    small = cv2.resize(image, None, fx=reduction, fy=reduction, interpolation=cv2.INTER_AREA)
     for factor, size, flags in SEARCHES:
-        searched = (
-            small
-            if factor == 1
-            else cv2.resize(small, None, fx=factor, fy=factor, interpolation=cv2.INTER_CUBIC)
-        )
-        enlarged = np.array(image.shape[::-1]) / searched.shape[::-1]
-        found, corners, meta = cv2.findChessboardCornersSBWithMeta(searched, size, flags)
-        if found and meta is not None:
-            grid = (corners.reshape(*meta.shape, 2).astype(np.float64) + 0.5) * enlarged - 0.5
-            board = _whole_board(image, grid)
-            if board is not None:
-                return board
+        grid = _seen_grid(image, factor * reduction, size, flags)
+        board = None if grid is None else _whole_board(image, grid) or _board_about(image, grid)
+        if board is not None:
+            return board
+    return None
+
+
+def _seen_grid(image: Grey, factor: float, size: tuple[int, int], flags: int) -> FloatArray | None:
+    """The grid [R, C, 2] that OpenCV finds in the image made larger by `factor`, in the image's pixels."""
+    interpolation = cv2.INTER_AREA if factor < 1 else cv2.INTER_CUBIC
+    searched = image
+    if factor != 1:
+        searched = cv2.resize(image, None, fx=factor, fy=factor, interpolation=interpolation)
+    enlarged = np.array(searched.shape[::-1]) / image.shape[::-1]
+    found, corners, meta = cv2.findChessboardCornersSBWithMeta(searched, size, flags)
+    if not found or meta is None:
+        return None
+    return np.asarray((corners.reshape(*meta.shape, 2).astype(np.float64) + 0.5) / enlarged - 0.5)
+
+
+def _board_about(image: Grey, grid: FloatArray) -> _Chessboard | None:
+    """The whole chessboard of which `grid` [R, C, 2] seems a part, searched for about it, made larger."""
+    side = float(np.median(_sides(grid)))
+    reach = grid.reshape(-1, 2) + ABOUT * side * np.array([[[-1.0]], [[1.0]]])
+    low = np.floor(np.clip(reach.min(axis=(0, 1)), 0, None)).astype(int)
+    high = np.ceil(reach.max(axis=(0, 1))).astype(int)
+    about = np.ascontiguousarray(image[low[1] : high[1], low[0] : high[0]])
+    for size in SIZES_ABOUT:
+        larger = _seen_grid(about, min(SIDE_ABOUT / side, MOST_ENLARGED), size, EXHAUSTIVE)
+        board = None if larger is None else _whole_board(image, larger + low)
+        if board is not None:
+            return board
     return None
 
 
@@ -217,7 +240,9 @@ def _whole_board(image: Grey, grid: FloatArray) -> _Chessboard | None:
     grid = _grown(image, grid)
     # The edge of the board and what is behind it may look like one more row.
     for part in (grid, grid[1:], grid[:-1], grid[:, 1:], grid[:, :-1]):
-        alternation = _alternation(image, part) if part[..., 0].size >= LEAST_CORNERS else 0
+        if min(part.shape[:2]) < LEAST_ROWS or part[..., 0].size < LEAST_CORNERS:
+            continue
+        alternation = _alternation(image, part)
         if alternation != 0:
             return _Chessboard(part, alternation < 0)
     return None

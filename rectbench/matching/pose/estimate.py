@@ -15,11 +15,12 @@ from typing import Literal
 import numpy as np
 from scipy.linalg import block_diag
 from scipy.spatial.transform import Rotation
+from scipy.special import ndtr, stdtrit
 
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput, PoseNotFound
 from rectbench.matching.features.matches import RATIO, match_features
-from rectbench.matching.pose.bundle import adjusted
+from rectbench.matching.pose.bundle import PARAMETERS, adjusted
 from rectbench.matching.pose.epipolar import (
     Pose,
     RayMatches,
@@ -51,6 +52,8 @@ POSE_PER_CELL = 10
 """Matches kept in one of some 170 cells: corners of the view count as much as its busiest part."""
 WITHIN_DEVIATIONS = 4.0
 """A match farther off than this many times the noise is an outlier."""
+MEDIANS_WORTH = 0.37
+"""What a normal distance adds to the noise's degrees of freedom, where their median tells it."""
 FINEST_PX = 1e-3
 """What exact matches are taken to be exact to."""
 CONTRADICTING_DEG = 30.0
@@ -223,14 +226,15 @@ def relative_pose(
     start = perf_counter()
     result = adjusted(left, right, pose, ahead)
     # Too few are within what the consensus left of its own matches' noise.
-    limit_px = min(threshold_px, WITHIN_DEVIATIONS * max(result.noise_px, FINEST_PX))
+    limit_px = min(threshold_px, _outlying_px(result.noise_px, len(ahead)))
     fitting = seen[np.abs(sampson_px(seen.terms(), essential(result.pose))[0]) <= limit_px]
     ahead = fitting[in_front(result.pose, fitting, limit_px)]
     ahead = ahead[depth_consistent(result.pose, ahead, limit_px)]
     result = adjusted(left, right, result.pose, ahead)
-    limit_px = WITHIN_DEVIATIONS * max(result.noise_px, FINEST_PX)
+    limit_px = min(threshold_px, _outlying_px(result.noise_px, len(ahead)))
     inliers = ahead[(result.distances_px <= limit_px) & in_front(result.pose, ahead, limit_px)]
     _refuse_few(len(inliers), given)
+    limit_px = WITHIN_DEVIATIONS * max(result.noise_px, FINEST_PX)
     refuse_pure_rotation(result.pose, fitting, limit_px)
     refuse_behind(result.pose, fitting, limit_px)
     across = block_diag(np.eye(3), tangents(result.pose.t))
@@ -250,10 +254,22 @@ def _narrowed(pose: Pose, matches: RayMatches, limit_px: float) -> tuple[Pose, f
     """The consensus with the limit that its own noise asks for, never a wider one."""
     terms = matches.terms()
     for _ in range(2):
-        noise_px = deviation(sampson_px(terms, essential(pose))[0], limit_px)
-        limit_px = min(limit_px, WITHIN_DEVIATIONS * max(noise_px, FINEST_PX))
+        distances = sampson_px(terms, essential(pose))[0]
+        noise_px = deviation(distances, limit_px)
+        limit_px = min(limit_px, _outlying_px(noise_px, int((np.abs(distances) < limit_px).sum())))
         pose = locally_optimised(pose, terms, limit_px)
     return pose, limit_px
+
+
+def _outlying_px(noise_px: float, count: int) -> float:
+    """Beyond it a match is an outlier, of `count` whose distances' median tells the noise.
+
+    Four deviations of many matches. Few tell the noise badly: where it comes out small, four would cut right
+    matches off, and what is left would look too exact. So it is Student's t that tells what is as rare.
+    """
+    freedom = MEDIANS_WORTH * max(count - PARAMETERS, 1)
+    rarity = float(ndtr(-WITHIN_DEVIATIONS))
+    return float(-stdtrit(freedom, rarity)) * max(noise_px, FINEST_PX)
 
 
 def _refuse_few(count: int, given: int) -> None:

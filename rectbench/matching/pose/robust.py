@@ -32,7 +32,7 @@ CONFIDENCE = 0.9999
 FINEST = 0.05
 """Distances below this share of the limit cost next to nothing."""
 LEVERAGE_BOUND = 3.0
-"""Multiple of the mean leverage above which a match is weighted down."""
+"""Multiple of the mean leverage, 5 / N in a plain fit, above which a match is weighted down."""
 DAMPING = 1e-12
 """Share of a Hessian's trace that is added to its diagonal."""
 LOCALLY_OPTIMISED = 3
@@ -106,7 +106,8 @@ def mallows_weights(leverage: FloatArray) -> FloatArray:
     A wrong match on the right epipolar line seems very near to the cameras, and would so determine
     the fit: a point of high leverage keeps its residual small. (Hampel et al., Robust Statistics, 1986.)
     """
-    share = LEVERAGE_BOUND * leverage.mean() / np.maximum(leverage, np.finfo(float).tiny)
+    bound = LEVERAGE_BOUND * SAMPLE / len(leverage)
+    share = bound / np.maximum(leverage, np.finfo(float).tiny)
     weights: FloatArray = np.minimum(1, share) ** 2
     return weights
 
@@ -120,7 +121,9 @@ def regular(hessian: FloatArray) -> FloatArray:
 def deviation(distances: FloatArray, limit_px: float) -> float:
     """Standard deviation, px, of the distances below the limit, from their median; the limit for a few."""
     near = np.abs(distances[np.abs(distances) < limit_px])
-    return float(TO_DEVIATION * np.median(near)) if near.size >= MEASURABLE else limit_px
+    if near.size < MEASURABLE:
+        return limit_px
+    return float(TO_DEVIATION * np.median(near) * near.size / (near.size - SAMPLE))
 
 
 def _samples(rng: np.random.Generator, count: int) -> NDArray[np.intp]:
