@@ -197,7 +197,12 @@ def perspective_limit(part: Part) -> str:
     others = tuple(m for m in part.methods if m not in perspective)
     limits = {one.rig: _limit(one, perspective, others) for one in rig_curves(part)}
     least = min(shares(part.catalogue), default=0)
-    return _limit_text({rig: limit for rig, limit in limits.items() if limit}, least)
+    found = {rig: limit for rig, limit in limits.items() if limit}
+    text = _limit_text(found, least)
+    lacking = len(part.rigs) - len(found)
+    if text and lacking:
+        text += f" On {lacking} of {len(part.rigs)} rigs no perspective image was to be had."
+    return text
 
 
 def _limit(one: RigCurves, perspective: Sequence[str], others: Sequence[str]) -> _Limit | None:
