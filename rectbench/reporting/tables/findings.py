@@ -95,7 +95,7 @@ def leading(part: Part) -> str:
 
 def _more(ratios: Interval, two: _Leaders) -> str:
     """How much more, and between what, such as 11 % more (interval over rigs: −1 % to +26 %)."""
-    more = f"{change(ratios.estimate).lstrip('+')} more"
+    more = f"{change(ratios.estimate).lstrip('+')} more" if round(100 * (ratios.estimate - 1)) else "as large"
     if is_too_wide(ratios):
         return f"{more} ({ratios.units} rigs: too few to tell)"
     corrected = not two.are_told_apart and ratios.low > 1
