@@ -42,7 +42,8 @@ _TABLES = {
 }
 """Under which heading each kind of table stands."""
 _MOST_ROWS = 30
-"""Of a longer table the page shows the averages over all rigs or motions, and folds the rest."""
+"""Of a longer table, headings of sections counted, the page shows the averages over all rigs or motions, and
+folds the rest."""
 _FACTS = {
     "command": "Command",
     "data": "Photographs of",

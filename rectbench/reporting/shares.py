@@ -46,9 +46,9 @@ def reads(column: Column) -> str:
     """The heading, with what a share is of: as it stands it may be taken for a percentile's or interval's.
 
     >>> reads(Column("row_error_95_mean_px", "row error, 95 %", "px")), reads(Column("fit_s", "fit", "ms"))
-    ('row error, 95 % of view', 'fit')
+    ('row error, 95\\xa0% of view', 'fit')
     """
-    return column.heading if share_of(column) is None else re.sub(r" %$", " % of view", column.heading)
+    return column.heading if share_of(column) is None else re.sub(r" %$", "\u00a0% of view", column.heading)
 
 
 @dataclass(frozen=True)

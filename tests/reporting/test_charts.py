@@ -138,3 +138,10 @@ def test_long_names_stay_within_the_page(write_run: WriteRun) -> None:
     box = figure.legends[0].get_window_extent()
     assert box.x0 >= 0
     assert box.x1 <= figure.bbox.width
+
+
+def test_what_a_chart_is_made_from_reads_the_same_in_every_process(write_run: WriteRun) -> None:
+    run = read_run(write_run([r | {"group": "pairs"} for r in quick_rows()], spec=PAIRS))
+    part = run.part("pairs")
+    for drawing in Bars().drawings(FigureData(part, run, fake_sources(), looks(run.methods))):
+        assert "set(" not in repr(drawing.made_from)

@@ -107,6 +107,16 @@ def test_many_rigs_are_counted_and_told_first(write_run: WriteRun) -> None:
     )
 
 
+def test_rigs_without_any_perspective_image_are_counted(write_run: WriteRun) -> None:
+    rows = [
+        *crossing_at(64.0, "a"),
+        *(row for row in crossing_at(64.0, "b") if row["method"] != "conventional"),
+    ]
+    assert limit(write_run, rows).endswith(
+        "up to 96° across, abraham beyond. On 1 of 2 rigs no perspective image was to be had."
+    )
+
+
 def test_a_report_of_one_kind_of_image_has_no_limit(write_run: WriteRun) -> None:
     rows = [row for row in crossing_at(64.0, "a") if row["method"] != "conventional"]
     assert limit(write_run, rows) == ""

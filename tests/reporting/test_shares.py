@@ -22,4 +22,4 @@ def test_columns_of_one_thing_on_many_shares_have_one_entry() -> None:
 def test_no_share_reads_as_if_it_were_a_percentile() -> None:
     for column in known().columns:
         if share_of(column) is not None:
-            assert f"{share_of(column)} % of" in reads(column)
+            assert f"{share_of(column)} % of" in reads(column).replace("\u00a0", " ")

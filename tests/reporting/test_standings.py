@@ -140,7 +140,13 @@ LEADERS = {"abraham": around(0.3), "local-homography": around(0.2, np.roll(UNEVE
             "rows off by 3.4 px on 1 of 6",
         ),
         ([kept_row(rig, 1.0, row_misfit_px=1.9) for rig in SIX], "–"),
-        ([failed_row("street", rig, "exact", "conventional") for rig in SIX], "6 cells failed"),
+        ([failed_row("street", rig, "exact", "conventional") for rig in SIX], "unsupported"),
+        (
+            [failed_row("street", rig, "exact", "conventional", "timeout") for rig in SIX[:3]]
+            + [kept_row(rig, 0.5) for rig in SIX[3:5]]
+            + rows_of({"conventional": {SIX[5]: 0.3}}),
+            "timeout on 3 of 6",
+        ),
     ],
 )
 def test_in_the_place_of_the_number_stands_why_there_is_none(

@@ -158,9 +158,9 @@ def pair_chart(
                 if not _is_not_to_be_had(run.select(results, place=place), key)
             }
     floor = max(run.catalogue.column(key).floor for key in titles)
-    linear = frozenset(titles[key] for key in bounded if titles[key] in panels)
+    linear = tuple(titles[key] for key in bounded if titles[key] in panels)
     if len(linear) == len(panels):
-        linear = frozenset()  # no others to set them apart from
+        linear = ()  # no others to set them apart from
     return BarChart(label, floor, reference, run.methods, panels, linear=linear)
 
 

@@ -47,8 +47,9 @@ class BarChart:
     panels: Mapping[str, Mapping[str, Mapping[str, Bar]]]
     stated: Mapping[str, float] = field(default_factory=dict)
     """Values that somebody else states, by group."""
-    linear: frozenset[str] = frozenset()
-    """Panels with an axis of their own, linear from 0: of values that are bounded."""
+    linear: tuple[str, ...] = ()
+    """Panels with an axis of their own, linear from 0: of values that are bounded. No set: its order, and so
+    the digest of the drawing, would differ from one process to another."""
 
 
 def bar_of(results: Sequence[Result], key: str, scale: float) -> Bar:

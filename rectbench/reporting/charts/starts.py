@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -21,6 +21,7 @@ ENERGY = "distortion_native_grid"
 """What the fit minimises, as a column."""
 SAME_MINIMUM = 0.01
 """Ending at most this much above the default start's L, relatively, is ending in the same minimum."""
+_LETTER_INCHES = 0.055
 _FLOOR = 1e-6
 
 
@@ -109,7 +110,7 @@ def draw_starts(study: tuple[Starts, ...], look: Look) -> matplotlib.figure.Figu
         ax.plot(
             across, excess, look.marker, color=look.colour, markersize=3, markeredgewidth=0, clip_on=False
         )
-        words = f"{starts.same} of {starts.count}" + (f", {starts.failed} failed" if starts.failed else "")
+        words = f"{starts.same} of {starts.count}" + (f"\n{starts.failed} failed" if starts.failed else "")
         ax.text(x, 1.02, words, transform=ax.get_xaxis_transform(), ha="center", va="bottom", size=6.5)
     ax.set_yscale("log")
     largest = max((ratio - 1 for starts in study for ratio in starts.ratios), default=1.0)
@@ -121,7 +122,11 @@ def draw_starts(study: tuple[Starts, ...], look: Look) -> matplotlib.figure.Figu
     at_edge = ax.get_yaxis_transform()
     ax.text(0.995, SAME_MINIMUM / 1.5, "same minimum", transform=at_edge, ha="right", va="top", size=6)
     ax.set_xlim(-0.5, len(study) - 0.5)
-    ax.set_xticks(range(len(study)), [starts.label for starts in study])
+    labels = [starts.label for starts in study]
+    longest = max(len(line) for label in labels for line in label.split("\n"))
+    slanted: dict[str, Any] = {"rotation": 30, "ha": "right", "rotation_mode": "anchor"}
+    crowded = longest * _LETTER_INCHES > (width - 0.5) / len(study)
+    ax.set_xticks(range(len(study)), labels, **(slanted if crowded else {}))
     ax.tick_params(axis="x", length=0)
     ax.set_ylabel("L over the default start's, less 1")
     ax.grid(axis="y")

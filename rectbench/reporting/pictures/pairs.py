@@ -15,7 +15,7 @@ from rectbench.plugins.figure import FigureData, Sources
 from rectbench.plugins.result import Result
 from rectbench.reporting.pictures.pair_picture import PairPicture
 from rectbench.reporting.pictures.panels import attempts, fit_into_box, panel_grid, write_head, write_message
-from rectbench.reporting.shares import measure, share_of
+from rectbench.reporting.shares import measure
 from rectbench.reporting.style import PAGE_INCHES
 from rectbench.reporting.tables.numbers import shown
 from rectbench.types import FloatArray, Matches
@@ -42,7 +42,7 @@ Image = NDArray[np.generic]
 _CAPTION = (
     "Scan lines run through {points} (rings): on a rectified pair both rings lie on the line, and both boxes "
     "between the dashed ones. Each pair is fitted to its panel: sizes do not compare from one method to the "
-    "next."
+    "next. Log distortion is that on the share of the view that methods are ranked at."
 )
 
 
@@ -121,11 +121,9 @@ def _panel(sources: Sources, result: Result, pair: StereoPair, marks: Shown) -> 
 
 
 def _quantity(value: float, key: str) -> str:
-    """What was measured: heading, number and unit, and of what share of the view."""
+    """What was measured, number and unit; of what share of the view the caption says."""
     shown_as = column(key)
-    share = share_of(shown_as)
-    heading, of = (shown_as.heading, "") if share is None else (measure(shown_as), f"({share} % of view)")
-    return " ".join(filter(None, [heading, shown(value, shown_as), shown_as.unit, of]))
+    return f"{measure(shown_as)} {shown(value, shown_as)} {shown_as.unit}".strip()
 
 
 def _marks(matches: Matches, pair: StereoPair) -> Shown:

@@ -97,7 +97,7 @@ def leading(part: Part) -> str:
 
 def _more(ratios: Interval, two: _Leaders) -> str:
     """How much more, and between what, such as 11 % more (interval over rigs: −1 % to +26 %)."""
-    more = f"{change(ratios.estimate).lstrip('+')} more"
+    more = f"{change(ratios.estimate).lstrip('+')} more" if round(100 * (ratios.estimate - 1)) else "as large"
     if is_too_wide(ratios):
         return f"{more} ({ratios.units} rigs: too few to tell)"
     corrected = not two.are_told_apart and ratios.low > 1
@@ -199,7 +199,12 @@ def perspective_limit(part: Part) -> str:
     others = tuple(m for m in part.methods if m not in perspective)
     limits = {one.rig: _limit(one, perspective, others) for one in rig_curves(part)}
     least = min(shares(part.catalogue), default=0)
-    return _limit_text({rig: limit for rig, limit in limits.items() if limit}, least)
+    found = {rig: limit for rig, limit in limits.items() if limit}
+    text = _limit_text(found, least)
+    lacking = len(part.rigs) - len(found)
+    if text and lacking:
+        text += f" On {lacking} of {len(part.rigs)} rigs no perspective image was to be had."
+    return text
 
 
 def _limit(one: RigCurves, perspective: Sequence[str], others: Sequence[str]) -> _Limit | None:

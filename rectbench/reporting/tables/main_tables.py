@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 from rectbench.plugins.metric import Column
 from rectbench.reporting.asked import methods_part
 from rectbench.reporting.names import named
@@ -70,7 +68,7 @@ def _main_table(run: Run, pose: str) -> Table:
         first.append(
             (head, [_ranked_entry(found, *own) for own in zip(found.summaries, entries, strict=True)])
         )
-        first += filter(None, [_interval_field(found.summaries, ranking)])
+        first += filter(None, [_interval_field(found, ranking)])
     placed = [*first, *fields.values()]
     scene = "scene" if run.has_truth else "photographed pair"
     told = [found.design, found.order, averages_text(results, columns, scene)]
@@ -108,9 +106,12 @@ def _ranked_entry(found: Standing, summary: Summary, entry: Entry) -> Entry:
     )
 
 
-def _interval_field(summaries: Sequence[Summary], column: Column) -> _Field | None:
+def _interval_field(found: Standing, column: Column) -> _Field | None:
     """The intervals of the ranking column; None where the rigs are too few for any."""
-    texts = [interval_text(s.averages[column.key], column) for s in summaries]
+    texts = [
+        "" if s.method in found.behind else interval_text(s.averages[column.key], column)
+        for s in found.summaries
+    ]
     if not any(texts):
         return None
     meaning = (

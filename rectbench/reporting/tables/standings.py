@@ -11,7 +11,7 @@ from rectbench.plugins.catalogue import Catalogue
 from rectbench.plugins.metric import Column
 from rectbench.plugins.result import Result
 from rectbench.reporting.curves import KEPT, ranked_by, ranked_share
-from rectbench.reporting.tables.captions import capitalised, counted, listed
+from rectbench.reporting.tables.captions import capitalised, listed
 from rectbench.reporting.tables.numbers import MISSING, two_digits
 from rectbench.reporting.tables.summaries import Summary, averaged
 from rectbench.runs.units import by_rig, floor_of
@@ -146,21 +146,22 @@ def lacking(results: Sequence[Result], column: Column) -> str:
     """Why a method has no number of a column on all of these pairs, and on how many where it has some.
 
     "rows off by 3.4 px" is the worst of them, "keeps 43 % on 2 of 12" the mean of the two, in whole percent
-    downwards. Empty where every pair has a number, a dash where nothing is known of those without.
+    downwards, "unsupported" how most of them ended. Empty where every pair has a number, a dash where
+    nothing is known of those without.
     """
     without = [r for r in results if column.key not in r.metrics]
     if not without:
         return ""
     crooked = [r for r in without if is_misfit(r)]
     kept = [r for r in without if r.metrics.get(KEPT, 1.0) < 1]
-    failed = [r for r in without if not r.ok]
+    failed = [r.status for r in without if not r.ok]
     if crooked:
         said, about = f"{ROWS_OFF} {two_digits(max(map(_rows_off_px, crooked)))} px", crooked
+    elif len(failed) > len(kept):
+        said, about = max(failed, key=failed.count), failed
     elif kept:
         share = math.fsum(r.metrics[KEPT] for r in kept) / len(kept)
         said, about = f"{KEEPS}\u00a0{math.floor(100 * share + 1e-6)}\u00a0%", kept
-    elif failed:
-        return f"{counted(len(failed), 'cell')} failed"
     else:
         return MISSING
     return said if len(about) == len(results) else f"{said} on {len(about)} of {len(results)}"

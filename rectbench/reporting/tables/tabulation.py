@@ -81,6 +81,8 @@ def method_rows(
 def titled(run: Run, title: str) -> str:
     """A table's title, with the part's before it."""
     part = part_title(run)
+    if part.casefold() == title.casefold():
+        return title
     return f"{part}: {title[0].lower()}{title[1:]}" if part else title
 
 
