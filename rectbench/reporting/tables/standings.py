@@ -156,12 +156,12 @@ def lacking(results: Sequence[Result], column: Column) -> str:
     kept = [r for r in without if r.metrics.get(KEPT, 1.0) < 1]
     failed = [r.status for r in without if not r.ok]
     if crooked:
-        said, about = f"{ROWS_OFF} {two_digits(max(map(_rows_off_px, crooked)))} px", crooked
+        said, count = f"{ROWS_OFF} {two_digits(max(map(_rows_off_px, crooked)))} px", len(crooked)
     elif len(failed) > len(kept):
-        said, about = max(failed, key=failed.count), failed
+        said, count = max(failed, key=failed.count), len(failed)
     elif kept:
         share = math.fsum(r.metrics[KEPT] for r in kept) / len(kept)
-        said, about = f"{KEEPS}\u00a0{math.floor(100 * share + 1e-6)}\u00a0%", kept
+        said, count = f"{KEEPS}\u00a0{math.floor(100 * share + 1e-6)}\u00a0%", len(kept)
     else:
         return MISSING
-    return said if len(about) == len(results) else f"{said} on {len(about)} of {len(results)}"
+    return said if count == len(results) else f"{said} on {count} of {len(results)}"
