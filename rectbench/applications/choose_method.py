@@ -21,9 +21,9 @@ from rectbench.plugins.fitting import checked_options, fit
 from rectbench.plugins.rectifier import METHODS, Problem, Rectifier, pose_problem
 from rectbench.registry import Plugin, registry
 from rectbench.rigs import Rig
-from rectbench.scored import Delivered, ScoredView, check_agreement
+from rectbench.scored import Delivered, ScoredPixels, ScoredView, check_agreement
 from rectbench.scored.differences import differences
-from rectbench.types import Images, Matches
+from rectbench.types import BoolArray, FloatArray, Images, Matches
 from rectbench.warps import Framing, Rectification, centre_rays, framed, rectifying_rotations
 from rectbench.warps.frame import angles
 from rectbench.warps.jacobians import LogStretches
@@ -164,7 +164,7 @@ def _tried(
         rows = row_misfit(own, delivered, problem.rig)
         rect = framed(own, framing)
         measured = frame_costs(rect, problem.rig)
-        measured[RANKING] = log_distortion_where(own, view, framing) if rows.rectifies else math.nan
+        measured[RANKING] = log_distortion_where(own, delivered, framing) if rows.rectifies else math.nan
         if trusted is not None:
             measured[ROWS] = row_error(rect, *trusted).columns()[ROWS]
     except Exception as error:  # a plugin may raise anything, and the others are still to be tried
@@ -174,25 +174,37 @@ def _tried(
     return Candidate(plugin.name, rect, measured, reason=rows.reason or lacks)
 
 
-def log_distortion_where(rect: Rectification, view: ScoredView, framing: Framing) -> float:
-    """Log distortion on the source pixels that a framing speaks of, whatever the rectification's own frame
-    shows.
+def log_distortion_where(rect: Rectification, delivered: Delivered, framing: Framing) -> float:
+    """Log distortion on the part of the view that a framing speaks of.
 
     On the share of the view nearest to its middle for a coverage, else on the pixels within the field of
-    view. NaN where the rectification does not map them all.
+    view. By the lookup tables where these show it all, else by differences of the map over a pixel, whatever
+    its own frame shows. NaN where the rectification does not map all of it.
     """
-    found = []
-    middle = np.mean(angles(centre_rays(rect.rig)), axis=-1)
-    for side, R_epi_cam in zip(SIDES, rectifying_rotations(rect.rig), strict=True):
-        scored = view.side(side)
-        if framing.fov_deg is None:
-            asked = scored.pixels[: scored.count(framing.coverage or 1.0)]
-        else:
-            off = np.stack(angles(scored.camera.unproject(scored.pixels)[0] @ R_epi_cam.T), axis=-1) - middle
-            asked = scored.pixels[(np.abs(off) <= np.radians(framing.fov_deg) / 2).all(axis=-1)]
-        found.append(differences(rect.warp(side), asked)[1])
-    J = np.concatenate(found)
+    shown, weights, differing = [], [], []
+    for name, R_epi_cam in zip(SIDES, rectifying_rotations(rect.rig), strict=True):
+        side = delivered.side(name)
+        asked = _asked(side.scored.pixels, side.scored, framing, rect.rig, R_epi_cam)
+        shown.append(side.shown[asked])
+        differing.append(differences(rect.warp(name), side.scored.pixels[asked])[1])
+        middles = side.pieces.middles.T
+        weights.append(side.pieces.areas_px * _asked(middles, side.scored, framing, rect.rig, R_epi_cam))
+    if np.concatenate(shown).all():
+        return delivered.log_stretches.distortion(np.concatenate(weights))[0]
+    J = np.concatenate(differing)
     return LogStretches.of(J).distortion()[0] if np.isfinite(J).all() else math.nan
+
+
+def _asked(
+    pixels: FloatArray, scored: ScoredPixels, framing: Framing, rig: Rig, R_epi_cam: FloatArray
+) -> BoolArray:
+    """Mask [N] of the source pixels [N, 2] that a framing speaks of."""
+    if framing.fov_deg is None:
+        return scored.within(pixels, framing.coverage or 1.0)
+    rays, seen = scored.camera.unproject(pixels)
+    off = np.stack(angles(rays @ R_epi_cam.T), axis=-1) - np.mean(angles(centre_rays(rig)), axis=-1)
+    asked: BoolArray = seen & np.all(np.abs(off) <= np.radians(framing.fov_deg) / 2, axis=-1)
+    return asked
 
 
 def _rank(candidate: Candidate, all_tried: Sequence[Candidate]) -> tuple[bool, bool, float]:

@@ -27,8 +27,10 @@ PLACES = 1_500
 """An image, each in the cell of a scored pixel."""
 TABLE_PX = 0.01
 """A table's entry is this near to the inverse map; float32 keeps 0.001 px of the largest image."""
-SHOWN_SHARE = 0.9
-"""Of what is said to be shown as much is shown, and has an entry; the rest lies at edges."""
+SHOWN_SHARE = 0.5
+"""Of the places beside shown pixels as many are shown; the rest lies at edges."""
+ENTRY_SHARE = 0.9
+"""Of these places as many have an entry of the table; the rest lies at rims of the view."""
 FOUND_SHARE = 0.99
 """Of the pixels that are mapped into the frame as many are found in the table."""
 HELD_SHARE = 0.95
@@ -162,7 +164,7 @@ def _check_table(places: _Places, sheet: Sheet) -> None:
     _, small = singular_values(*entries(places.by_differences), np)
     step = 1 / small  # source pixels to the next entry
     found = np.linalg.norm(entry - places.pixels, axis=-1) <= step + ROUNDING_PX
-    if len(found) and found.mean() < SHOWN_SHARE:
+    if len(found) and found.mean() < ENTRY_SHARE:
         raise InvalidResult(
             f"the {places.side} lookup table lacks {1 - found.mean():.0%} of the places that are mapped "
             f"into it"

@@ -107,10 +107,10 @@ class Delivered:
         if not self.keeps(share):
             return math.nan
         weights = np.concatenate([side.shares(share) for side in (self.left, self.right)])
-        return self._log_stretches.distortion(weights)[0]
+        return self.log_stretches.distortion(weights)[0]
 
     @cached_property
-    def _log_stretches(self) -> LogStretches:
+    def log_stretches(self) -> LogStretches:
         """Of all pieces, left then right."""
         return LogStretches.of(np.concatenate([side.pieces.jacobians for side in (self.left, self.right)]))
 

@@ -36,19 +36,29 @@ def test_a_share_of_the_view_is_asked_where_nobody_asks() -> None:
     assert rb.metrics.coverage(choice.rectification, RIG)["coverage_pixels"] == pytest.approx(0.95, abs=0.005)
 
 
-def test_a_method_whose_rows_are_off_is_not_chosen(tmp_path: Path) -> None:
-    """Its distortion is the least, but its right image is turned."""
-    skewed = write_method(
+def skewed_by(turned_rad: float, tmp_path: Path) -> str:
+    """A method whose distortion is the least, but whose right image is turned."""
+    return write_method(
         tmp_path,
         "skewed",
         "rect = rb.rectify(problem.rig, 'local-homography')\n"
-        "c, s = np.cos(0.02), np.sin(0.02)\n"
+        f"c, s = np.cos({turned_rad}), np.sin({turned_rad})\n"
         "turn = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])\n"
         "right = rb.Warp(rect.right.source, turn @ rect.R_rect_right, rect.right.target)\n"
         "return rb.Rectification(problem.rig, rect.left, right, rect.size)",
     )
+
+
+def test_a_method_whose_rows_are_far_off_is_not_chosen(tmp_path: Path) -> None:
+    choice = best_method(RIG, methods=[skewed_by(0.05, tmp_path), "abraham"])
+    assert choice.best.method == "abraham"
+    assert choice.candidates[1].reason.startswith("does not rectify: rows of near points are ")
+    forget_plugins()
+
+
+def test_a_method_whose_rows_trusted_matches_find_off_is_not_chosen(tmp_path: Path) -> None:
     _, left, right = points_before(RIG, 200)
-    methods = [skewed, "abraham"]
+    methods = [skewed_by(0.006, tmp_path), "abraham"]
     without = best_method(RIG, methods=methods)
     assert without.best.method == "skewed"  # nobody knows about its rows
     choice = best_method(RIG, methods=methods, trusted=Matches(left, right))
