@@ -164,7 +164,7 @@ def test_a_map_that_is_no_rectification_stands_below_those_that_show_little(writ
     rows = [*rows_of(LEADERS), *crooked, *(kept_row(rig, 0.4) for rig in SIX)]
     table = only_table(read_run(write_run(rows)))
     assert list(column(table, "ok"))[2:] == ["conventional", "hartley"]
-    assert any("which is no rectification" in note and "hartley" in note for note in table.notes)
+    assert any("rows are off by more than 2 px" in note and "hartley" in note for note in table.notes)
 
 
 def test_the_ranking_column_stands_before_all_others(write_run: WriteRun) -> None:
