@@ -122,8 +122,8 @@ def behind_text(found: Standing, catalogue: Catalogue) -> str:
     told = []
     if short:
         told.append(
-            f"Not ranked, for they show less than {share} % of the view on some pair, or nothing: "
-            f"{listed(short)}; they stand below by how much of it they keep."
+            f"Without a rank, as less than {share} % of the view is shown on some pair, or nothing: "
+            f"{listed(short)}. What shows more of it stands nearer to the ranked ones."
         )
     if crooked:
         told.append(
