@@ -16,8 +16,9 @@ from rectbench.warps import Rectification
 
 LARGEST_BEND_PX = 0.05
 """What is farther from the plane of its row is no row; a formula whose rows are planes keeps 0.0001 px."""
-LARGEST_MISFIT_PX = 2.0
-"""Of a pose found in images, with room; a map that does not rectify is some 20 px off at 640 px of width."""
+LARGEST_MISFIT = 0.01
+"""Of the source's width: what a pose that was found in images comes to, with room. Images left as they are
+have three times as much."""
 MATCHES = 1_000
 NEAREST, FARTHEST = 3.0, 10.0
 """Baselines: near points, whose rows a map has to bring together."""
@@ -36,16 +37,17 @@ class RowMisfit:
     bend_px: float
     """The farthest that an entry of the tables is from the plane of its row; all planes of an image have one
     line in common, its baseline. 0 for every map whose rows are epipolar planes of some pose."""
-    misfit_px: float
-    """95th percentile of the row errors of near points of a rig, those of a rig that fits best."""
+    misfit: float
+    """95th percentile of the row errors of near points of the rig that fits best, as a share of the image's
+    width."""
 
     @property
     def reason(self) -> str:
         """Why it does not rectify; empty where it does."""
         if self.bend_px > LARGEST_BEND_PX:
             return f"does not rectify: rows are bent by {self.bend_px:.2g} px"
-        if self.misfit_px > LARGEST_MISFIT_PX:
-            return f"does not rectify: rows of near points are {self.misfit_px:.2g} px apart"
+        if self.misfit > LARGEST_MISFIT:
+            return f"does not rectify: rows of near points are {self.misfit:.1%} of the image's width apart"
         return ""
 
     @property
@@ -64,7 +66,7 @@ def row_misfit(rect: Rectification, delivered: Delivered, *rigs: Rig) -> RowMisf
     True
     """
     bend_px = max(_bend_px(side) for side in (delivered.left, delivered.right))
-    return RowMisfit(bend_px, min((_misfit_px(rect, rig) for rig in rigs), default=math.nan))
+    return RowMisfit(bend_px, min((_misfit(rect, rig) for rig in rigs), default=math.nan))
 
 
 def case_row_misfit(case: Case) -> RowMisfit:
@@ -83,10 +85,10 @@ def simulated_matches(rig: Rig, count: int, nearest: float, farthest: float) -> 
     return Matches(pixels[seen], pixels_right[seen])
 
 
-def _misfit_px(rect: Rectification, rig: Rig) -> float:
+def _misfit(rect: Rectification, rig: Rig) -> float:
     errors = row_error(rect, *simulated_matches(rig, MATCHES, NEAREST, FARTHEST)).source_px
     errors = errors[np.isfinite(errors)]
-    return float(np.quantile(errors, 0.95)) if errors.size else math.nan
+    return float(np.quantile(errors, 0.95)) / rig.left.width if errors.size else math.nan
 
 
 def _bend_px(side: DeliveredSide) -> float:
@@ -134,12 +136,14 @@ class RowMisfitMetric(Metric):
             f" above {LARGEST_BEND_PX:g} px a map is no rectification, and has no distortion at equal view.",
             shown="pairs",
         ),
-        Column.pixels(
-            "row_misfit_px",
+        Column.share(
+            "row_misfit",
             "rows, misfit",
-            "95th percentile of the row error, in pixels of the source images, of simulated points "
-            f"{NEAREST:g} to {FARTHEST:g} baselines away, by the pose that the method was told or the "
-            f"true one, whichever fits better; above {LARGEST_MISFIT_PX:g} px a map is none either.",
+            "lower",
+            f"95th percentile of the row error of simulated points {NEAREST:g} to {FARTHEST:g} baselines "
+            "away, in source pixels, as a share of the image's width, by the pose that the method was told or "
+            f"the true one, whichever fits better; above {LARGEST_MISFIT:.0%} a map is none either.",
+            floor=1e-6,
             shown="pairs",
         ),
     )
@@ -147,4 +151,4 @@ class RowMisfitMetric(Metric):
     def compute(self, case: Case) -> dict[str, float]:
         """Of both images together."""
         found = case.once(case_row_misfit)
-        return {"row_bend_px": found.bend_px, "row_misfit_px": found.misfit_px}
+        return {"row_bend_px": found.bend_px, "row_misfit": found.misfit}

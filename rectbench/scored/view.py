@@ -29,6 +29,7 @@ MIDDLE_PIXELS = 2_000
 SHARES = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.75, 0.8, 0.9, 0.95, 1.0)
 """The shares of the view that rows tell of."""
 LEAST_REACH_PX = 0.5
+EDGES_PX = 0.5 * np.array([[-1.0, 0.0], [1.0, 0.0], [0.0, -1.0], [0.0, 1.0]])
 ROW_POINTS = 513
 """Along the middle row of the view."""
 
@@ -60,7 +61,7 @@ class ScoredPixels:
         cell_px, corners = _grid(camera, count)
         # To pixel centres at the image's edge, as far as its rows and columns reach.
         pixels = np.clip(_jittered(corners, cell_px, rng), 0, np.array(camera.size) - 1)
-        pixels = pixels[camera.unproject(pixels)[1]]
+        pixels = pixels[_wholly_seen(camera, pixels)]
         middle, seen = camera.project(ray)
         if not seen:  # cameras that look apart have no common middle
             middle = (np.array(camera.size) - 1) / 2
@@ -195,6 +196,12 @@ def _cells(camera: Camera, count: float) -> tuple[tuple[float, float], FloatArra
 def _jittered(corners: FloatArray, cell_px: tuple[float, float], rng: np.random.Generator) -> FloatArray:
     places: FloatArray = corners + rng.random(corners.shape) * np.array(cell_px)
     return places
+
+
+def _wholly_seen(camera: Camera, pixels: FloatArray) -> BoolArray:
+    """Mask of the pixels [N, 2] that the lens sees to their edges: those of its rim belong to no view."""
+    seen: BoolArray = np.all(camera.unproject(pixels[:, None] + EDGES_PX)[1], axis=-1)
+    return seen
 
 
 def _distance(pixels: FloatArray, middle: FloatArray, reach: FloatArray) -> FloatArray:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from rectbench.metrics.row_misfit import LARGEST_BEND_PX, LARGEST_MISFIT_PX
+from rectbench.metrics.row_misfit import LARGEST_BEND_PX, LARGEST_MISFIT
 from rectbench.plugins.catalogue import Catalogue
 from rectbench.plugins.metric import Column
 from rectbench.plugins.result import Result
@@ -18,9 +18,9 @@ from rectbench.runs.units import by_rig, floor_of
 from rectbench.statistics.ranking import Ranking, rank, signed_rank_caveat
 
 _KEPT = Column(KEPT, "view kept")
-ROW_LIMITS_PX = {"row_bend_px": LARGEST_BEND_PX, "row_misfit_px": LARGEST_MISFIT_PX}
+ROW_LIMITS = {"row_bend_px": LARGEST_BEND_PX, "row_misfit": LARGEST_MISFIT}
 """The columns of how far a map puts rows off, and beyond what it is no rectification."""
-ROWS_OFF, KEEPS = "rows off by", "keeps"
+ROWS, KEEPS = "rows", "keeps"
 _TWICE = 2.0
 """Ratios up to this are told as a difference in percent, larger ones as a factor."""
 
@@ -117,7 +117,7 @@ def behind_text(found: Standing, catalogue: Catalogue) -> str:
             f"Without {catalogue.ranking.heading} on every pair, and so without a rank: "
             f"{listed(list(found.behind))}."
         )
-    crooked = [method for method, why in found.behind.items() if why.startswith(ROWS_OFF)]
+    crooked = [method for method, why in found.behind.items() if why.startswith(ROWS)]
     short = [method for method in found.behind if method not in crooked]
     told = []
     if short:
@@ -135,17 +135,21 @@ def behind_text(found: Standing, catalogue: Catalogue) -> str:
 
 def is_misfit(result: Result) -> bool:
     """Whether the map is no rectification of the pair."""
-    return any(result.metrics.get(key, 0.0) > limit for key, limit in ROW_LIMITS_PX.items())
+    return any(result.metrics.get(key, 0.0) > limit for key, limit in ROW_LIMITS.items())
 
 
-def _rows_off_px(result: Result) -> float:
-    return max(result.metrics.get(key, 0.0) for key in ROW_LIMITS_PX)
+def _rows_off(results: Sequence[Result]) -> str:
+    """The worst of them: rows that are bent, in pixels, or that do not meet, in percent of the width."""
+    bent_px, misfit = (max(r.metrics.get(key, 0.0) for r in results) for key in ROW_LIMITS)
+    if bent_px > LARGEST_BEND_PX:
+        return f"{ROWS} bent by {two_digits(bent_px)} px"
+    return f"{ROWS} {two_digits(100 * misfit)} % apart"
 
 
 def lacking(results: Sequence[Result], column: Column) -> str:
     """Why a method has no number of a column on all of these pairs, and on how many where it has some.
 
-    "rows off by 3.4 px" is the worst of them, "keeps 43 % on 2 of 12" the mean of the two, in whole percent
+    "rows bent by 3.4 px" is the worst of them, "keeps 43 % on 2 of 12" the mean of the two, in whole percent
     downwards, "unsupported" how most of them ended. Empty where every pair has a number, a dash where
     nothing is known of those without.
     """
@@ -156,7 +160,7 @@ def lacking(results: Sequence[Result], column: Column) -> str:
     kept = [r for r in without if r.metrics.get(KEPT, 1.0) < 1]
     failed = [r.status for r in without if not r.ok]
     if crooked:
-        said, count = f"{ROWS_OFF} {two_digits(max(map(_rows_off_px, crooked)))} px", len(crooked)
+        said, count = _rows_off(crooked), len(crooked)
     elif len(failed) > len(kept):
         said, count = max(failed, key=failed.count), len(failed)
     elif kept:
