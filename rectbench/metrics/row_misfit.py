@@ -141,7 +141,7 @@ class RowMisfitMetric(Metric):
             "rows, misfit",
             "lower",
             f"95th percentile of the row error of simulated points {NEAREST:g} to {FARTHEST:g} baselines "
-            "away, in source pixels, as a share of the image's width, by the pose that the method was told or "
+            "away, in source pixels, as a share of the width, by the pose that the method was told or "
             f"the true one, whichever fits better; above {LARGEST_MISFIT:.0%} a map is none either.",
             floor=1e-6,
             shown="pairs",
