@@ -7,12 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rectbench.metrics.row_error import row_error
 from rectbench.plugins.metric import Case, Column, Metric
 from rectbench.rigs import Rig
 from rectbench.scored import Delivered, DeliveredSide
 from rectbench.types import FloatArray, Matches
 from rectbench.warps import Rectification
+from rectbench.warps.lookup.resampling import SIDES
+from rectbench.warps.rectification import in_frame
 
 LARGEST_BEND_PX = 0.05
 """What is farther from the plane of its row is no row; a formula whose rows are planes keeps 0.0001 px."""
@@ -66,12 +67,13 @@ def row_misfit(rect: Rectification, delivered: Delivered, *rigs: Rig) -> RowMisf
     True
     """
     bend_px = max(_bend_px(side) for side in (delivered.left, delivered.right))
-    return RowMisfit(bend_px, min((_misfit(rect, rig) for rig in rigs), default=math.nan))
+    return RowMisfit(bend_px, min((_misfit(rect, delivered, rig) for rig in rigs), default=math.nan))
 
 
 def case_row_misfit(case: Case) -> RowMisfit:
-    """That of a case, against the true rig and the believed one."""
-    return row_misfit(case.rect, case.delivered, case.rig, case.believed or case.rig)
+    """That of a case, against the true rig, and the believed one where that is another."""
+    rigs = [case.rig] if case.believed in (None, case.rig) else [case.rig, case.believed]
+    return row_misfit(case.rect, case.delivered, *rigs)
 
 
 def simulated_matches(rig: Rig, count: int, nearest: float, farthest: float) -> Matches:
@@ -85,8 +87,16 @@ def simulated_matches(rig: Rig, count: int, nearest: float, farthest: float) -> 
     return Matches(pixels[seen], pixels_right[seen])
 
 
-def _misfit(rect: Rectification, rig: Rig) -> float:
-    errors = row_error(rect, *simulated_matches(rig, MATCHES, NEAREST, FARTHEST)).source_px
+def _misfit(rect: Rectification, delivered: Delivered, rig: Rig) -> float:
+    rows, pixels_per_row = [], []
+    for side, matches in zip(SIDES, simulated_matches(rig, MATCHES, NEAREST, FARTHEST), strict=True):
+        pieces, px_rect = delivered.side(side).pieces, rect.warp(side).forward(matches)
+        if not len(pieces.jacobians):
+            return math.nan
+        piece = pieces.at(pieces.sheet.place(px_rect))
+        rows.append(np.where((piece >= 0) & in_frame(px_rect, rect.size), px_rect[:, 1], np.nan))
+        pixels_per_row.append(1 / np.linalg.norm(pieces.jacobians[piece, 1], axis=-1))
+    errors = np.abs(rows[0] - rows[1]) * np.mean(pixels_per_row, axis=0)
     errors = errors[np.isfinite(errors)]
     return float(np.quantile(errors, 0.95)) / rig.left.width if errors.size else math.nan
 

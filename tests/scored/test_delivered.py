@@ -75,7 +75,7 @@ def test_a_small_image_is_scored_as_a_large_one(width: int) -> None:
         Delivered.of(rb.rectify(p, method="abraham"), ScoredView.of(p)).log_distortion(0.95)
         for p in (pair, pair.scaled(width / pair.left.width))
     )
-    assert small == pytest.approx(large, rel=0.01)
+    assert small == pytest.approx(large, rel=0.04)  # half a pixel of rim is more of a small image
 
 
 def test_a_method_that_shows_all_keeps_all_and_one_that_crops_does_not() -> None:
