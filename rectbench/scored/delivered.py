@@ -39,7 +39,9 @@ class DeliveredSide:
         px_rect = warp.forward(scored.pixels)
         delivered = Sheet(warp, rect.size, rect.maps(side))
         pieces, mapped = Pieces.of(delivered), in_frame(px_rect, rect.size)
-        return cls(scored, px_rect, mapped, mapped & pieces.hold(scored.pixels, px_rect), delivered, pieces)
+        shown = mapped.copy()
+        shown[mapped] = pieces.hold(scored.pixels[mapped], px_rect[mapped])
+        return cls(scored, px_rect, mapped, shown, delivered, pieces)
 
     @property
     def kept(self) -> int:

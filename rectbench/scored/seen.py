@@ -14,7 +14,7 @@ from rectbench.rigs import Rig
 from rectbench.types import BoolArray, FloatArray
 from rectbench.warps.warp import rotated
 
-DENSE_PIXELS = 150_000
+DENSE_PIXELS = 60_000
 """Coverage and order look at about this many pixels of an image, on a regular grid."""
 
 

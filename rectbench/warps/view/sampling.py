@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 
 import numpy as np
 
@@ -23,6 +24,12 @@ def evaluation_pixels(camera: Camera, count: int = EVALUATION_PIXELS) -> FloatAr
     >>> rb.evaluation_pixels(rb.load_rig("t265").left).shape
     (489, 2)
     """
+    return _seen_cell_centres(camera, count).copy()
+
+
+@lru_cache(maxsize=16)
+def _seen_cell_centres(camera: Camera, count: int) -> FloatArray:
+    """All methods of a rig ask for them, and each several times."""
     grid = _cell_centres(camera, count)
     seen = camera.unproject(grid)[1]
     if 0 < seen.mean() < 1:
