@@ -228,7 +228,7 @@ FOUND_OUT = {
     other_frame: "the left lookup table shows something else at",
     says_that_it_shows_all: "the left lookup table shows something else at",
     discs_at_scored_pixels: r"the map is folded or mirrored|inverse\(forward\(x\)\) is not x, near pixel",
-    discs_at_some_scored_pixels: r"inverse\(forward\(x\)\) is not x, near pixel",
+    discs_at_some_scored_pixels: r"the map is folded or mirrored|inverse\(forward\(x\)\) is not x, near pixel",
     false_jacobian: "the stated jacobian is not the derivative of forward, near pixel",
     folded: "the left lookup table shows something else at",
     other_tables: "the left lookup table is folded or mirrored, near pixel",
