@@ -121,7 +121,7 @@ class ScoredView:
     >>> import rectbench as rb
     >>> view = rb.ScoredView.of(rb.load_rig("t265"))
     >>> [round(view.across_deg(share)) for share in (0.5, 0.95, 1.0)]
-    [95, 144, 159]
+    [95, 143, 159]
     >>> view.matches_within([[420.0, 400.0], [60.0, 400.0]], [[420.0, 400.0], [60.0, 400.0]], 0.5)
     array([ True, False])
     """
