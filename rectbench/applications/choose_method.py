@@ -161,7 +161,7 @@ def _tried(
         own = fit(plugin, problem, checked_options(plugin, {}))
         delivered = Delivered.of(own, view)
         check_agreement(own, delivered)
-        rows = row_misfit(own, delivered, problem.rig)
+        rows = row_misfit(own, delivered, problem.rig, works_from=plugin.value.needs)
         rect = framed(own, framing)
         measured = frame_costs(rect, problem.rig)
         measured[RANKING] = log_distortion_where(own, delivered, framing) if rows.rectifies else math.nan

@@ -214,6 +214,8 @@ class Case:
     pair: Known
     believed: Rig | None = None
     """The rig that the method was told, where that is not the true one."""
+    works_from: frozenset[str] = frozenset({"pose"})
+    """What the method works from, its `needs`."""
     pose_is_estimated: bool = False
     """Whether the method was told the pose that the images tell."""
     fit: Callable[[], Rectification] | None = None

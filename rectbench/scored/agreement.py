@@ -53,6 +53,7 @@ def check_agreement(rect: Rectification, delivered: Delivered) -> None:
     rng = np.random.default_rng(_seed(delivered))
     for side in SIDES:
         scored, warp = delivered.side(side), rect.warp(side)
+        _check_enough(side, scored.pieces)
         _check_unfolded(side, scored.pieces)
         _check_holes(side, scored)
         places = _places(side, warp, rect.size, scored, rng)
@@ -73,6 +74,15 @@ def _seed(delivered: Delivered) -> int:
     for side in SIDES:
         found.update(np.ascontiguousarray(delivered.side(side).pieces.jacobians).tobytes())
     return int.from_bytes(found.digest()[:8], "little")
+
+
+def _check_enough(side: Side, pieces: Pieces) -> None:
+    if pieces.are_few:
+        width, height = pieces.sheet.size
+        raise InvalidResult(
+            f"the {side} image shows the source in {len(pieces.areas_px)} places of a table of "
+            f"{width}x{height} entries; expected a frame that the image fills, to be scored"
+        )
 
 
 def _check_unfolded(side: Side, pieces: Pieces) -> None:

@@ -43,6 +43,27 @@ class Sheet:
         place: FloatArray = np.nan_to_num((px_rect + 0.5) * self.scale - 0.5)
         return place
 
+    def source(self, px_rect: FloatArray) -> FloatArray:
+        """Source pixels [K, 2] that the table has at pixels [K, 2] of the delivered frame.
+
+        Whatever `forward` says; between entries, and NaN beside missing ones.
+        """
+        place = np.clip(self.place(px_rect), 0, np.array(self.size) - 1.0)
+        first = np.minimum(place.astype(np.intp), np.maximum(np.array(self.size) - 2, 0))
+        (columns, rows), (across, down) = first.T, (place - first).T[..., None]
+        nexts = np.minimum(columns + 1, self.size[0] - 1), np.minimum(rows + 1, self.size[1] - 1)
+        top, low = (
+            self._entries(columns, r) * (1 - across) + self._entries(nexts[0], r) * across
+            for r in (rows, nexts[1])
+        )
+        source: FloatArray = top * (1 - down) + low * down
+        return source
+
+    def _entries(self, columns: NDArray[np.intp], rows: NDArray[np.intp]) -> FloatArray:
+        entries = np.stack([layer[rows, columns] for layer in self.table], axis=-1).astype(float)
+        entries[(entries <= OUTSIDE).all(axis=-1)] = np.nan
+        return entries
+
     def finer(self, entries: float) -> Sheet:
         """The same image with at least so many entries, as far as that is feasible."""
         least = round(math.sqrt(min(entries, LARGEST_TABLE)))
@@ -75,15 +96,15 @@ class Pieces:
 
     @classmethod
     def of(cls, delivered: Sheet) -> Pieces:
-        """Those of a table, or of a finer one: at least some `FEWEST_PIECES` where anything is shown."""
+        """Those of a table, or of a finer one: `FEWEST_PIECES` or more that show the source, if feasible."""
         entries, count = math.prod(delivered.size), PIECES
         found = cls.between(delivered, count)
         if found.are_few and count < entries:
-            count = min(entries, 2 * count * FEWEST_PIECES // len(found.areas_px))
+            count = min(entries, LARGEST_TABLE, 2 * count * FEWEST_PIECES // len(found.areas_px))
             found = cls.between(delivered, count)
         if found.are_few:
-            finer = delivered.finer(2 * entries * FEWEST_PIECES / len(found.areas_px))
-            found = cls.between(finer, math.prod(finer.size))
+            finer = delivered.finer(2 * count * FEWEST_PIECES / len(found.areas_px))
+            found = cls.between(finer, min(LARGEST_TABLE, math.prod(finer.size)))
         return found
 
     @classmethod

@@ -144,6 +144,7 @@ def _measured(task: CellTask, pair: Pair) -> Outcome:
         rectification,
         pair,
         believed=problem.rig,
+        works_from=frozenset(method.value.needs),
         pose_is_estimated=task.cell.pose == ESTIMATED,
         fit=fit,
         first_fit_s=first_fit_s,

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from rectbench.metrics.row_misfit import LARGEST_BEND_PX, LARGEST_MISFIT
+from rectbench.metrics.row_misfit import LARGEST_BEND_PX
 from rectbench.plugins.catalogue import Catalogue
 from rectbench.plugins.metric import Column
 from rectbench.plugins.result import Result
@@ -18,8 +18,8 @@ from rectbench.runs.units import by_rig, floor_of
 from rectbench.statistics.ranking import Ranking, rank, signed_rank_caveat
 
 _KEPT = Column(KEPT, "view kept")
-ROW_LIMITS = {"row_bend_px": LARGEST_BEND_PX, "row_misfit": LARGEST_MISFIT}
-"""The columns of how far a map puts rows off, and beyond what it is no rectification."""
+RECTIFIES, BENT, MISFIT = "rectifies", "row_bend_px", "row_misfit"
+"""The columns of whether a map is a rectification, and of how far it puts rows off."""
 ROWS, KEEPS = "rows", "keeps"
 _TWICE = 2.0
 """Ratios up to this are told as a difference in percent, larger ones as a factor."""
@@ -135,12 +135,12 @@ def behind_text(found: Standing, catalogue: Catalogue) -> str:
 
 def is_misfit(result: Result) -> bool:
     """Whether the map is no rectification of the pair."""
-    return any(result.metrics.get(key, 0.0) > limit for key, limit in ROW_LIMITS.items())
+    return result.metrics.get(RECTIFIES, 1.0) < 1
 
 
 def _rows_off(results: Sequence[Result]) -> str:
     """The worst of them: rows that are bent, in pixels, or that do not meet, in percent of the width."""
-    bent_px, misfit = (max(r.metrics.get(key, 0.0) for r in results) for key in ROW_LIMITS)
+    bent_px, misfit = (max(r.metrics.get(key, 0.0) for r in results) for key in (BENT, MISFIT))
     if bent_px > LARGEST_BEND_PX:
         return f"{ROWS} bent by {two_digits(bent_px)} px"
     return f"{ROWS} {two_digits(100 * misfit)} % apart"
