@@ -80,7 +80,7 @@ def _check_enough(side: Side, pieces: Pieces) -> None:
     if pieces.are_few:
         width, height = pieces.sheet.size
         raise InvalidResult(
-            f"the {side} image shows the source in {len(pieces.areas_px)} places of a table of "
+            f"the {side} image shows the source in {pieces.count} places of a table of "
             f"{width}x{height} entries; expected a frame that the image fills, to be scored"
         )
 
@@ -91,7 +91,7 @@ def _check_unfolded(side: Side, pieces: Pieces) -> None:
         u, v = pieces.middles[:, folded[0]]
         raise InvalidResult(
             f"the {side} lookup table is folded or mirrored, near pixel ({u:.0f}, {v:.0f}) of the source "
-            f"image and in {len(folded) / len(pieces.areas_px):.1%} of its pieces"
+            f"image and in {len(folded) / pieces.count:.1%} of its pieces"
         )
 
 

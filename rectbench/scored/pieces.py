@@ -97,18 +97,17 @@ class Pieces:
     @classmethod
     def of(cls, delivered: Sheet) -> Pieces:
         """Those of a table, or of a finer one: `FEWEST_PIECES` or more that show the source, if feasible."""
-        entries, count = math.prod(delivered.size), PIECES
-        found = cls.between(delivered, count)
-        if found.are_few and count < entries:
-            count = min(entries, LARGEST_TABLE, 2 * count * FEWEST_PIECES // len(found.areas_px))
-            found = cls.between(delivered, count)
+        entries, found = math.prod(delivered.size), cls.between(delivered, PIECES)
+        if found.count < FEWEST_PIECES < entries:
+            wanted = 2 * PIECES * FEWEST_PIECES / max(1, found.count)
+            found = cls.between(delivered, min(wanted, entries, LARGEST_TABLE))
         if found.are_few:
-            finer = delivered.finer(2 * count * FEWEST_PIECES / len(found.areas_px))
+            finer = delivered.finer(2 * entries * FEWEST_PIECES / found.count)
             found = cls.between(finer, min(LARGEST_TABLE, math.prod(finer.size)))
         return found
 
     @classmethod
-    def between(cls, sheet: Sheet, count: int) -> Pieces:
+    def between(cls, sheet: Sheet, count: float) -> Pieces:
         """About `count` pieces of a frame, those of them that show the source."""
         spacing = math.sqrt(math.prod(sheet.size) / count)
         columns, rows = (_spread(side, spacing) for side in sheet.size)
@@ -129,9 +128,14 @@ class Pieces:
         )
 
     @property
+    def count(self) -> int:
+        """How many there are."""
+        return len(self.areas_px)
+
+    @property
     def are_few(self) -> bool:
         """Whether there are some, and too few to tell how the map changes from one to the next."""
-        return 0 < len(self.areas_px) < FEWEST_PIECES
+        return 0 < self.count < FEWEST_PIECES
 
     def at(self, px_rect: FloatArray) -> NDArray[np.intp]:
         """The pieces [K] at pixels [K, 2] of the sheet; -1 where there is none."""
@@ -147,7 +151,7 @@ class Pieces:
         Of the entries about the place one at least is as near to the pixel as its neighbours are to it.
         """
         held = np.zeros(len(pixels), dtype=bool)
-        if not len(self.areas_px):
+        if not self.count:
             return held
         place = self.sheet.place(px_rect)
         spacing = np.array([self.columns[1] - self.columns[0], self.rows[1] - self.rows[0]])
