@@ -219,5 +219,5 @@ class RowMisfitMetric(Metric):
         return {
             "row_bend_px": found.bend_px,
             "row_misfit": found.misfit,
-            "rectifies": float(found.rectifies),
+            "rectifies": float(found.rectifies) if case.delivered.kept_share > 0 else math.nan,
         }

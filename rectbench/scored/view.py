@@ -81,8 +81,9 @@ class ScoredPixels:
         return math.ceil(share * len(self.pixels) - 1e-9)
 
     def edge(self, share: float) -> float:
-        """The distance to which A_s reaches; 0 where there is no pixel."""
-        return float(self.distance[self.count(share) - 1]) if len(self.pixels) else 0.0
+        """The distance to which A_s reaches; 0 where there is no pixel in it."""
+        count = self.count(share)
+        return float(self.distance[count - 1]) if count > 0 else 0.0
 
     def within(self, px: FloatArray, share: float) -> BoolArray:
         """Mask [...] of the source pixels [..., 2] that belong to A_s."""

@@ -68,3 +68,9 @@ def test_pixels_depend_on_the_camera_alone() -> None:
     ]
     first, second = (ScoredView.of(pair).left.pixels for pair in pairs)
     np.testing.assert_array_equal(first, second)
+
+
+def test_no_share_of_the_view_holds_no_pixel() -> None:
+    scored = ScoredView.of(rb.load_rig("t265").scaled(0.25)).left
+    assert scored.edge(0.0) == 0.0
+    assert not scored.within(scored.pixels, 0.0).any()
