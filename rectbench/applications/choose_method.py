@@ -138,7 +138,10 @@ def best_method(
     view = ScoredView.of(rig)
     tried = [_tried(plugin, problem, view, chosen, trusted) for plugin in plugins]
     if not any(candidate.rectification for candidate in tried):
-        reasons = "; ".join(f"{candidate.method}: {candidate.reason}" for candidate in tried)
+        by_reason: dict[str, list[str]] = {}
+        for candidate in tried:
+            by_reason.setdefault(candidate.reason, []).append(candidate.method)
+        reasons = "; ".join(f"{', '.join(methods)}: {reason}" for reason, methods in by_reason.items())
         raise Unsupported(f"no method applies to rig {rig.name}: {reasons}")
     return Choice(tuple(sorted(tried, key=lambda candidate: _rank(candidate, tried))), chosen)
 

@@ -83,6 +83,8 @@ class Registry(Generic[T]):
                 self.broken[place] = _clash(self.found[plugin.name])
 
     def _in_file(self, path: Path) -> Plugin[T]:
+        if path.is_dir():
+            raise InvalidInput(f"{path} is a folder; expected a file with {self.kind.expected} in it")
         if not path.is_file():
             raise InvalidInput(f"there is no file {path}; expected {self.kind.expected} in it")
         try:

@@ -178,6 +178,8 @@ def read_record(folder: Path) -> RunRecord:
     path = folder / RUN_FILE
     try:
         found = json.loads(path.read_text(encoding="utf-8"))
+    except NotADirectoryError:
+        raise InvalidInput(f"{folder} is a file; expected a run's folder") from None
     except FileNotFoundError:
         raise InvalidInput(f"{folder} is no run's folder: {RUN_FILE} is missing") from None
     except (OSError, ValueError, RecursionError) as error:

@@ -89,17 +89,27 @@ def _entries(row: Mapping[Hashable, Any], levels: list[str]) -> Iterator[str]:
     yield ratio
     yield f"{low} to {high}"
     yield percents(row["resolves"])[0].lstrip("+")
-    yield "over a million" if pd.isna(row["rigs_needed"]) else str(row["rigs_needed"])
+    yield "over a million" if pd.isna(row["rigs_needed"]) else _about(row["rigs_needed"])
     for level in levels:
         needed, count = row[f"{level}s_needed"], row[f"{level}s"]
-        yield str(needed) if not pd.isna(needed) else RIGS_ONLY if count else ""
+        yield _about(needed) if not pd.isna(needed) else RIGS_ONLY if count else ""
+
+
+def _about(needed: float) -> str:
+    """A number of things to two digits, upwards: how rigs differ is not known better.
+
+    >>> _about(17), _about(5976)
+    ('17', '6000')
+    """
+    unit = 10 ** max(0, len(str(int(needed))) - 2)
+    return str(-(-int(needed) // unit) * unit)
 
 
 def _remarks(planned: pd.DataFrame, tests: int, detect: float, levels: Sequence[str]) -> Iterator[str]:
     """What the numbers are, how sure they are, and what each level within a rig is worth."""
     wanted = _wanted(detect)
     yield (
-        "Told from: what four benches of five like this one tell, by paired t tests of log ratios over rigs, "
+        "Told from: with 80 % power, by paired t tests of log ratios over rigs, "
         f"at 5 % for {counted(tests, 'pair')} of methods together (Holm)."
     )
     rigs = int(planned["rigs"].min())

@@ -105,7 +105,7 @@ def why_not_drawn(part: Part) -> str:
     if methods >= LEAST_METHODS and rigs >= LEAST_RIGS:
         return ""
     return (
-        f"No figure of critical differences: it takes {LEAST_METHODS} methods with a number of "
+        f"No figure of critical differences: it takes {LEAST_METHODS} methods with a "
         f"{ranked_by(part.catalogue)} on {LEAST_RIGS} rigs; here are {counted(methods, 'method')} on "
         f"{counted(rigs, 'rig')}."
     )

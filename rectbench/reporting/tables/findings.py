@@ -92,7 +92,7 @@ def leading(part: Part) -> str:
     if two.are_told_apart:
         who = f"{two.first} is ahead of {two.second}{where}"
     more = f"{two.second}'s {measure(column)} is {_more(ratios, two)}"
-    return f"{who}: {more}; {_ahead(two, column)}{_odds(two, column)}."
+    return f"{who}: {more}; {_ahead(two, column)}.{_odds(two, column)}"
 
 
 def _more(ratios: Interval, two: _Leaders) -> str:
@@ -125,8 +125,8 @@ def _odds(two: _Leaders, column: Column) -> str:
     if odds < _LIKELY:
         return ""
     return (
-        f" (a signed-rank test finds {likely} better by {100 * EQUIVALENT:g} % or more with probability "
-        f"{min(odds, 0.99):.2f}: it goes by the ranks of the rigs' differences, the t test by their sizes)"
+        " That is by a t test, which goes by how large the differences of rigs are; by their ranks alone, "
+        f"{likely} is better by {100 * EQUIVALENT:g} % or more with probability {min(odds, 0.99):.2f}."
     )
 
 
@@ -269,7 +269,8 @@ def _limit_text(limits: Mapping[str, _Limit], least: int) -> str:
     cases = [
         (
             never,
-            f"{best} nowhere, not even on the inmost {least} % of the view: {_winners(never)} has less",
+            f"{_winners(never)} has less log distortion than any perspective image, even on the inmost "
+            f"{least} % of the view",
         ),
         (always, f"{best} in the whole view"),
         (crossing, f"{best} {_views(crossing)}, {_winners(crossing)} beyond"),

@@ -90,7 +90,7 @@ def _design_text(found: Ranking) -> str:
     if found.units < found.of:
         rigs = f"{found.units} of {found.of} rigs, which all ranked methods serve,"
     return (
-        f"{_ratio_text(found.resolves)} between two methods shows on {rigs} in four cases of five; where no "
+        f"{_ratio_text(found.resolves)} between two methods shows on {rigs} with 80 % power; where no "
         "difference shows, methods share their places, such as 1–2."
     )
 
