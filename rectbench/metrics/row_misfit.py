@@ -21,7 +21,7 @@ LARGEST_BEND_PX = 0.05
 LARGEST_MISFIT = 0.01
 """Of the source's width: what rows that were found in images come to, with room. Images left as they are have
 three times as much."""
-TOLD_MISFIT = 5e-4
+TOLD_MISFIT = 2e-3
 """The same of methods that were told the pose, and work from nothing else."""
 MATCHES = 1_000
 NEAREST, FARTHEST = 3.0, 10.0

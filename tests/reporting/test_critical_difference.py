@@ -50,7 +50,7 @@ def placed(*orders: str) -> Decided:
 def test_why_there_is_no_figure_is_told_in_a_line(write_run: WriteRun) -> None:
     few = read_run(write_run(rows(RIGS[:9], tuple(METHODS)[:2])))
     assert why_not_drawn(few) == (
-        "No figure of critical differences: it takes 3 methods with a number of log distortion at 95 % of "
+        "No figure of critical differences: it takes 3 methods with a log distortion at 95 % of "
         "the view on 10 rigs; here are 2 methods on 9 rigs."
     )
     assert why_not_drawn(read_run(write_run(rows(RIGS), "many"))) == ""
