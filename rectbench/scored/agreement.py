@@ -42,6 +42,8 @@ DERIVATIVE_SHARE, DERIVATIVE_ARM_PX = 5e-3, 5e-3
 """The stated derivative is this near to differences over so short an arm, by the largest entry there."""
 DISTORTION_SHARE, DISTORTION_FLOOR = 0.01, 2e-3
 """A table's log distortion between neighbouring entries is this near to that between distant ones."""
+LEAST_PIECES = 1_000
+"""By fewer, of the finest table that is feasible, nobody can tell what a map does to the image."""
 FOLDED = "the map is folded or mirrored (det J ≤ 0)"
 
 
@@ -77,7 +79,7 @@ def _seed(delivered: Delivered) -> int:
 
 
 def _check_enough(side: Side, pieces: Pieces) -> None:
-    if pieces.are_few:
+    if 0 < pieces.count < LEAST_PIECES:
         width, height = pieces.sheet.size
         raise InvalidResult(
             f"the {side} image shows the source in {pieces.count} places of a table of "
