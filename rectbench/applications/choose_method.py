@@ -184,17 +184,19 @@ def log_distortion_where(rect: Rectification, delivered: Delivered, framing: Fra
     view. By the lookup tables where these show it all, else by differences of the map over a pixel, whatever
     its own frame shows. NaN where the rectification does not map all of it.
     """
-    shown, weights, differing = [], [], []
+    shown, weights, asked_px = [], [], []
     for name, R_epi_cam in zip(SIDES, rectifying_rotations(rect.rig), strict=True):
         side = delivered.side(name)
         asked = _asked(side.scored.pixels, side.scored, framing, rect.rig, R_epi_cam)
         shown.append(side.shown[asked])
-        differing.append(differences(rect.warp(name), side.scored.pixels[asked])[1])
+        asked_px.append(side.scored.pixels[asked])
         middles = side.pieces.middles.T
         weights.append(side.pieces.areas_px * _asked(middles, side.scored, framing, rect.rig, R_epi_cam))
     if np.concatenate(shown).all():
         return delivered.log_stretches.distortion(np.concatenate(weights))[0]
-    J = np.concatenate(differing)
+    J = np.concatenate(
+        [differences(rect.warp(side), px)[1] for side, px in zip(SIDES, asked_px, strict=True)]
+    )
     return LogStretches.of(J).distortion()[0] if np.isfinite(J).all() else math.nan
 
 

@@ -19,7 +19,6 @@ from rectbench.scored.pieces import Pieces, Sheet
 from rectbench.types import BoolArray, FloatArray
 from rectbench.warps.jacobians import LogStretches, entries, singular_values
 from rectbench.warps.lookup.resampling import SIDES, Side
-from rectbench.warps.lookup.tables import OUTSIDE
 from rectbench.warps.rectification import Rectification, in_frame
 from rectbench.warps.warp import Warp
 
@@ -171,7 +170,7 @@ def _check_jacobian(warp: Warp, places: _Places) -> None:
 def _check_table(places: _Places, sheet: Sheet) -> None:
     """Entries are compared with the inverse at their own pixels; at the rim of the view one may see more."""
     columns, rows = _nearest(places.px_rect, sheet.table[0].shape)
-    entry = np.stack([layer[rows, columns] for layer in sheet.table], axis=-1).astype(float)
+    entry = sheet.entries(columns, rows)
     expected = sheet.warp.inverse(np.stack([columns, rows], axis=-1).astype(float))
     _, small = singular_values(*entries(places.by_differences), np)
     step = 1 / small  # source pixels to the next entry
@@ -188,16 +187,16 @@ def _check_table(places: _Places, sheet: Sheet) -> None:
 
 def _check_distortion(places: _Places, pieces: Pieces) -> None:
     """The table's own distortion, by differences between entries two apart, against that of its pieces."""
-    table, (width, height) = pieces.sheet.table, pieces.sheet.size
+    width, height = pieces.sheet.size
     columns, rows = np.rint(places.px_rect).astype(np.intp).T
     piece = pieces.at(places.px_rect)
     inner = (piece >= 0) & (columns > 0) & (columns < width - 1) & (rows > 0) & (rows < height - 1)
     columns, rows, piece = columns[inner], rows[inner], piece[inner]
     neighbours = [
-        np.stack([layer[rows + down, columns + across] for layer in table], axis=-1).astype(float)
+        pieces.sheet.entries(columns + across, rows + down)
         for across, down in ((-1, 0), (1, 0), (0, -1), (0, 1))
     ]
-    known = np.all([(entry > OUTSIDE).all(axis=-1) for entry in neighbours], axis=0)
+    known = np.all(np.isfinite(neighbours), axis=(0, 2))
     left, right, above, below = (entry[known] for entry in neighbours)
     inverses = np.stack([right - left, below - above], axis=-1) / 2
     unfolded = np.ones(len(places.pixels), dtype=bool)

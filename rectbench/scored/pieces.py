@@ -53,13 +53,14 @@ class Sheet:
         (columns, rows), (across, down) = first.T, (place - first).T[..., None]
         nexts = np.minimum(columns + 1, self.size[0] - 1), np.minimum(rows + 1, self.size[1] - 1)
         top, low = (
-            self._entries(columns, r) * (1 - across) + self._entries(nexts[0], r) * across
+            self.entries(columns, r) * (1 - across) + self.entries(nexts[0], r) * across
             for r in (rows, nexts[1])
         )
         source: FloatArray = top * (1 - down) + low * down
         return source
 
-    def _entries(self, columns: NDArray[np.intp], rows: NDArray[np.intp]) -> FloatArray:
+    def entries(self, columns: NDArray[np.intp], rows: NDArray[np.intp]) -> FloatArray:
+        """Source pixels [K, 2] of the table at columns and rows [K]; NaN where the lens sees nothing."""
         entries = np.stack([layer[rows, columns] for layer in self.table], axis=-1).astype(float)
         entries[(entries <= OUTSIDE).all(axis=-1)] = np.nan
         return entries
@@ -169,8 +170,7 @@ class Pieces:
     def _has_near(self, pixels: FloatArray, places: NDArray[np.intp], within_px: FloatArray) -> BoolArray:
         """Mask [K], whether entries at whole places [K, 2] of the sheet are so near to pixels [K, 2]."""
         columns, rows = np.clip(places, 0, np.array(self.sheet.size) - 1).T
-        entries = np.stack([layer[rows, columns] for layer in self.sheet.table], axis=-1)
-        near: BoolArray = np.all(np.abs(entries - pixels) <= within_px, axis=-1)
+        near: BoolArray = np.all(np.abs(self.sheet.entries(columns, rows) - pixels) <= within_px, axis=-1)
         return near
 
     def _nearest(self, place: FloatArray) -> NDArray[np.intp]:
