@@ -5,11 +5,13 @@ from __future__ import annotations
 import errno
 import os
 import re
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
+from rectbench.calibrations.documents.entries import as_entries, forget
 from rectbench.calibrations.documents.faults import shown
 from rectbench.calibrations.documents.sections import Section, parse_document
 from rectbench.errors import InvalidInput
@@ -63,11 +65,15 @@ def as_text(content: bytes, path: str) -> str:
 class Source:
     """One file: its path as the user gave it, and its first bytes.
 
-    `content` ends a byte beyond `MAX_BYTES` (4 MiB); a format whose files are larger reads `path`.
+    `content` ends a byte beyond `MAX_BYTES` (4 MiB); a format whose files are larger reads `path`. What was
+    made of it stands in `sections`, and files that were reached from it in `companions`, so that what a
+    reader left unread can be told.
     """
 
     path: str
     content: bytes
+    sections: dict[str, Section] = field(default_factory=dict, init=False, repr=False)
+    companions: list[Source] = field(default_factory=list, init=False, repr=False)
 
     @staticmethod
     def read(path: str | os.PathLike[str]) -> Source:
@@ -87,14 +93,26 @@ class Source:
     @cached_property
     def document(self) -> Section:
         """The YAML, JSON or XML that the file holds; raises InvalidInput where it holds none."""
-        return parse_document(self.text, self.path)
+        self.sections["document"] = parse_document(self.text, self.path)
+        return self.sections["document"]
+
+    def section(self, values: Mapping[str, Any], key: str = "") -> Section:
+        """Content that a format has parsed itself, under a key that errors name before its own."""
+        self.sections[f"parsed {key}"] = Section(self.path, key, as_entries(values))
+        return self.sections[f"parsed {key}"]
+
+    def forget(self) -> None:
+        """Count nothing of the file as read."""
+        self.companions.clear()
+        for section in self.sections.values():
+            forget(section.values)
 
     def table(self, mark: str) -> Section:
         """The lines `key mark words` by key: a word, or a list of several, without brackets and commas."""
         lines = (line.partition(mark) for line in self.text.splitlines())
         entries = {key.strip(): re.sub(r"[\[\];,]", " ", words).split() for key, _, words in lines}
         values = {key: words[0] if len(words) == 1 else words for key, words in entries.items()}
-        return Section(self.path, "", values)
+        return self.section(values)
 
     @cached_property
     def keys(self) -> frozenset[str]:
@@ -116,7 +134,9 @@ class Source:
             raise InvalidInput(
                 f"{self.path}: names the file {shown(name)}; expected one in its own folder or inside it"
             )
-        return Source.read(Path(self.path).parent / relative)
+        source = Source.read(Path(self.path).parent / relative)
+        self.companions.append(source)
+        return source
 
 
 def is_folder(path: str | os.PathLike[str]) -> bool:

@@ -27,6 +27,8 @@ from rectbench.rigs.rig import Rig
 def _read(sources: Sequence[Source], given: Given) -> Rig:
     source = single(sources)
     file = source.table(":")
+    file.knows("[SKDRT]_0?", "P?", "Tr*")  # other cameras, and where the lidar stands
+    file.knows("[SRP]_rect_0?", "R_rect")  # of the rectified images
     if "P0" in file:
         names = given.cameras or ("P0", "P1")
         return rig_of_posed([_read_rectified(file, name, given) for name in names], given, source.name)

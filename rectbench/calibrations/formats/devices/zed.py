@@ -63,7 +63,7 @@ def _parsed(source: Source) -> Section:
         parser.read_string(source.text)
     except configparser.Error as error:
         raise InvalidInput(f"{source.path}: {one_line(error)[:200]}; expected a ZED's .conf") from None
-    return Section(source.path, "", {name: dict(parser[name]) for name in parser.sections()})
+    return source.section({name: dict(parser[name]) for name in parser.sections()})
 
 
 def _resolution(file: Section, given: Given) -> str:

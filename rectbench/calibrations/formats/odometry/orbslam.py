@@ -20,6 +20,7 @@ from rectbench.calibrations.assembling import (
     side_by_side,
     single,
 )
+from rectbench.calibrations.consistency import compare_numbers
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents import Section, Source
 from rectbench.calibrations.formats.devices.ros import rectified_place
@@ -49,7 +50,18 @@ def _read(sources: Sequence[Source], given: Given) -> Rig:
     if "LEFT.K" not in file and "RIGHT.K" not in file:
         return _read_side_by_side(file, given, sources[0].name)
     posed = [_read_rectified(file, side, given) for side in ("LEFT", "RIGHT")]
-    return rig_of_posed(posed, given, sources[0].name)
+    rig = rig_of_posed(posed, given, sources[0].name)
+    _compare_rectified(file, rig)
+    return rig
+
+
+def _compare_rectified(file: Section, rig: Rig) -> None:
+    """`Camera` is the rectified one of LEFT.P, and `Camera.bf` its focal length times the baseline."""
+    P = file.array("LEFT.P", "the 3x4 projection matrix", (12,))
+    for key, place in (("fx", 0), ("fy", 5), ("cx", 2), ("cy", 6)):
+        compare_numbers(file, f"Camera.{key}", float(P[place]), "LEFT.P")
+    for key in ("Camera.bf", "bf"):
+        compare_numbers(file, key, float(P[0]) * rig.baseline_m, "LEFT.P and RIGHT.P")
 
 
 def _read_side_by_side(file: Section, given: Given, name: str) -> Rig:

@@ -21,6 +21,7 @@ RADIAL = ("k1", "k2", "k3")
 
 def _read(sources: Sequence[Source], given: Given) -> Rig:
     file = single(sources).document
+    file.knows("model")  # stereo_camera
     left, right = (_read_camera(file.section(side, "a camera"), given) for side in ("left", "right"))
     pose = file.section("rightToLeft", "the pose of the right camera")
     R = pose.rotation("rotation")

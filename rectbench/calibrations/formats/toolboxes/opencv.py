@@ -27,7 +27,6 @@ xi_1 xi_2.
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Collection, Sequence
 from pathlib import Path
 from typing import Any
@@ -37,7 +36,7 @@ import numpy as np
 
 from rectbench.calibrations.assembling import assembled, camera_of, rigid
 from rectbench.calibrations.contract import Given, RigFormat
-from rectbench.calibrations.documents import Section, Source, agreed_size, shown
+from rectbench.calibrations.documents import Section, Source, agreed_size, shown, tell
 from rectbench.calibrations.formats.toolboxes.opencv_keys import (
     DISTORTION,
     FLAGS,
@@ -63,8 +62,6 @@ from rectbench.errors import InvalidInput
 from rectbench.rigs.file_formats import Writing
 from rectbench.rigs.rig import Rig
 from rectbench.types import FloatArray
-
-log = logging.getLogger("rectbench.calibrations")
 
 YES_OR_NO = {"0": False, "0.0": False, "false": False, "1": True, "1.0": True, "true": True}
 
@@ -188,7 +185,7 @@ def _check_pinhole(where: str, coefficients: dict[str, float]) -> None:
     if max(abs(coefficients["p1"]), abs(coefficients["p2"])) > LARGEST_TANGENTIAL:
         found = shown(list(coefficients.values()))
         raise InvalidInput(f"{where} is {found}, more of a fisheye's than a pinhole's; expected {remedy}")
-    log.warning("%s: taken for a pinhole's k1 k2 p1 p2; a word on the lens would be %s", where, remedy)
+    tell(f"{where}: taken for a pinhole's k1 k2 p1 p2; a word on the lens would be {remedy}")
 
 
 def _read_lens(files: Files, number: int) -> str | None:
