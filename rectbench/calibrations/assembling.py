@@ -12,6 +12,7 @@ import numpy as np
 
 from rectbench.calibrations.contract import UNITS, Given, PosedCamera
 from rectbench.calibrations.documents import Section, Source, errors_at, shown
+from rectbench.calibrations.rectified_pair import in_one_frame
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig
@@ -73,7 +74,7 @@ def side_by_side(
 
 def rig_of_posed(posed: Sequence[PosedCamera], given: Given, name: str, unit: str | None = None) -> Rig:
     """The rig of two cameras, left and right, that stand in one frame."""
-    left, right = posed
+    left, right = in_one_frame(*posed)
     where = f"{left.where} and {right.where}"
     if left.T_shared_camera is None or right.T_shared_camera is None:
         unposed = left if left.T_shared_camera is None else right

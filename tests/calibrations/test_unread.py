@@ -15,11 +15,21 @@ from rectbench.calibrations.unread import tell_unread
 from tests.calibrations.examples import EXAMPLES, FISHEYES
 from tests.calibrations.test_every_format import assert_same_rig, written
 
-FOUR_UNSTATED = "opencv-sections"
-"""The example whose four coefficients nobody says to be a pinhole's."""
+TOLD = {
+    "opencv-sections": "taken for a pinhole's k1 k2 p1 p2",
+    "ros-fisheye-today": "K R in them, as ROS' calibrator of fisheyes writes them",
+    "ros-fisheye-own-focal": "own focal length in them",
+}
+"""Of which examples something is assumed, and what."""
 
 
-@pytest.mark.parametrize("name", [name for name in EXAMPLES if name != FOUR_UNSTATED])
+@pytest.mark.parametrize("name", TOLD)
+def test_what_is_assumed_is_told(tmp_path: Path, name: str, caplog: pytest.LogCaptureFixture) -> None:
+    load_rig(written(EXAMPLES[name], tmp_path), **EXAMPLES[name].options)
+    assert TOLD[name] in caplog.messages[0]
+
+
+@pytest.mark.parametrize("name", [name for name in EXAMPLES if name not in TOLD])
 def test_of_a_file_that_is_understood_nothing_is_told(
     tmp_path: Path, name: str, caplog: pytest.LogCaptureFixture
 ) -> None:

@@ -79,9 +79,10 @@ def _recognises(source: Source) -> bool:
 
 
 def _is_chain(source: Source) -> bool:
-    """Whether a file has cameras by Kalibr's names; one with a matrix is a calibration of OpenCV's."""
+    """Whether a file has cameras by Kalibr's names; some with other keys are OpenCV's or AirSLAM's."""
     cameras = [source.document.values[key] for key in source.keys if CAMERA.fullmatch(key)]
-    return any(not (isinstance(camera, dict) and camera.keys() & set(MATRIX)) for camera in cameras)
+    others = {*MATRIX, "T_type"}
+    return any(not (isinstance(camera, dict) and camera.keys() & others) for camera in cameras)
 
 
 def _read(sources: Sequence[Source], given: Given) -> Rig:

@@ -57,6 +57,7 @@ from rectbench.calibrations.formats.toolboxes.opencv_keys import (
     parts_of,
 )
 from rectbench.calibrations.layouts import layout_of
+from rectbench.calibrations.rectified_pair import matrix_of
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
 from rectbench.rigs.file_formats import Writing
@@ -247,12 +248,6 @@ def _write_camera(storage: Any, number: int, lens: str, camera: Camera) -> None:
     storage.write(f"D{number}", np.array([distortion_of(camera, lens)]))
     if lens == "omnidir":
         storage.write(f"xi_{number}", camera.params["xi"])
-
-
-def matrix_of(camera: Camera) -> FloatArray:
-    """The camera matrix [3, 3], with the skew where the camera has one."""
-    p = camera.params
-    return np.array([[p["fx"], p.get("skew", 0.0), p["cx"]], [0.0, p["fy"], p["cy"]], [0.0, 0.0, 1.0]])
 
 
 def distortion_of(camera: Camera, lens: str) -> list[float]:
