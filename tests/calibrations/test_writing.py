@@ -76,6 +76,13 @@ HOLDERS: dict[str, tuple[dict[str, float], set[str]]] = {
     "stereographic": ({}, {*SPHERES, "mrcal"}),
     "division": ({"k": -0.1}, {"colmap"}),
     "cahvor": ({"alpha": 0.01}, {"mrcal"}),
+    "tilted-pinhole tau_x": ({"k1": -0.1, "tau_x": 0.01}, {"opencv"}),
+    "tilted-pinhole k1": ({"k1": -0.1}, {*SPHERES, "ros", "mrcal"}),
+    "radial-tangential k4": ({"k1": -0.1, "k4": 0.01}, set()),
+    "radial-tangential k3": (
+        {"k3": -0.1},
+        {"opencv", "ros", "mrcal", "basalt", "colmap", "camodocal", "vins"},
+    ),
     "equisolid": ({}, set()),
     "orthographic": ({}, set()),
     "ocam": ({}, {"ocamcalib"}),

@@ -29,6 +29,7 @@ STEREO = "stereoRectificationData"
 
 def _read(sources: Sequence[Source], given: Given) -> Rig:
     source = single(sources)
+    source.document.knows("stereoEnableDistortionCorrection", "stereoUseSpecTranslation")  # of the device
     cameras = _cameras(source.document)
     names = chosen(_left_and_right_first(source.document, list(cameras)), given, source.path)
     placed = [_to_last(cameras, name) for name in names]

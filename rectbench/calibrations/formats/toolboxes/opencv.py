@@ -68,17 +68,20 @@ YES_OR_NO = {"0": False, "0.0": False, "false": False, "1": True, "1.0": True, "
 
 FOCAL = ("fx", "fy", "cx", "cy")
 CAMERA_MODELS = {"pinhole": "pinhole", "fisheye": "kannala-brandt", "omnidir": "unified"}
+TILT = ("tau_x", "tau_y")
+"""The last two of a pinhole's 14 coefficients, which turn its sensor."""
+
 PINHOLE_ORDER = ("k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6", "s1", "s2", "s3", "s4")
 ORDERS = {"pinhole": PINHOLE_ORDER, "fisheye": ("k1", "k2", "k3", "k4"), "omnidir": ("k1", "k2", "p1", "p2")}
 LAYOUTS = {
     lens: (model, (*FOCAL, *ORDERS[lens], *(() if lens == "pinhole" else ("skew", "xi"))))
     for lens, model in CAMERA_MODELS.items()
-}
+} | {"tilted": ("tilted-pinhole", (*FOCAL, *PINHOLE_ORDER, *TILT))}
 """What OpenCV's three modules have places for."""
 
 SUFFIXES = (".yml", ".yaml", ".xml", ".json")
 PINHOLE_COUNTS = (4, 5, 8, 12, 14)
-"""Lengths of OpenCV's distortion vector; the last two of 14 tilt the sensor."""
+"""Lengths of OpenCV's distortion vector."""
 
 COUNTS = {"pinhole": PINHOLE_COUNTS, "fisheye": (4,), "omnidir": (4,)}
 
@@ -118,13 +121,10 @@ def lens_parameters(file: Section, key: str, lens: str, counts: Collection[int])
     filled = PINHOLE_COUNTS if lens == "fisheye" else ()
     distortion = file.array(key, expected, {*counts, *filled}).tolist()
     order = ORDERS[lens]
-    if any(distortion[len(order) :]) and lens == "fisheye":
+    beyond = distortion[len(order) :]
+    if any(beyond) and lens == "fisheye":
         raise file.fault(key, expected)
-    if any(distortion[len(order) :]):
-        raise InvalidInput(
-            f"{file.at(key)} tilts the sensor (tau); expected its last two of 14 coefficients 0"
-        )
-    return dict(zip(order, distortion, strict=False))
+    return dict(zip((*order, *TILT) if any(beyond) else order, distortion, strict=False))
 
 
 def opencv_camera(
@@ -139,7 +139,12 @@ def opencv_camera(
     """The camera of OpenCV's matrix and distortion under these keys; `counts` are the latter's lengths."""
     params = camera_matrix(file, matrix, lens)
     params |= lens_parameters(file, distortion, lens, counts or COUNTS[lens])
-    return camera_of(where or file.at(matrix), CAMERA_MODELS[lens], size, params)
+    return camera_of(where or file.at(matrix), model_of(lens, params), size, params)
+
+
+def model_of(lens: str, params: Collection[str]) -> str:
+    """The projection model of OpenCV's lens with these parameters."""
+    return "tilted-pinhole" if set(TILT) & set(params) else CAMERA_MODELS[lens]
 
 
 def _read(sources: Sequence[Source], given: Given) -> Rig:
@@ -177,7 +182,7 @@ def _read_camera(files: Files, number: int, size: tuple[int, int] | None) -> Cam
         holder, xi_key = xi or files.first(XI, number, "Mei's xi, a number")
         params["xi"] = float(holder.array(xi_key, "Mei's xi, a number", (1,))[0])
     image = _read_size(files, number, size)
-    return camera_of(f"{document.at(key)}, {name}", CAMERA_MODELS[lens], image, params)
+    return camera_of(f"{document.at(key)}, {name}", model_of(lens, params), image, params)
 
 
 def _check_pinhole(where: str, coefficients: dict[str, float]) -> None:
@@ -242,7 +247,7 @@ def _texts(rig: Rig, name: str) -> dict[str, str]:
 
 
 def _write_camera(storage: Any, number: int, lens: str, camera: Camera) -> None:
-    storage.write(f"model_{number}", lens)
+    storage.write(f"model_{number}", "pinhole" if lens == "tilted" else lens)
     storage.write(f"imageSize_{number}", np.array([camera.size]))
     storage.write(f"K{number}", matrix_of(camera))
     storage.write(f"D{number}", np.array([distortion_of(camera, lens)]))
@@ -252,6 +257,8 @@ def _write_camera(storage: Any, number: int, lens: str, camera: Camera) -> None:
 
 def distortion_of(camera: Camera, lens: str) -> list[float]:
     """The coefficients in OpenCV's order, of a pinhole as many of 5, 8 or 12 as it takes."""
+    if lens == "tilted":
+        return [camera.params[name] for name in (*PINHOLE_ORDER, *TILT)]
     coefficients = [camera.params[name] for name in ORDERS[lens]]
     return coefficients[: next(n for n in (5, 8, 12) if not any(coefficients[n:]))]
 
