@@ -40,7 +40,8 @@ def load_rig(
     unit : what translations are in, "m", "cm", "mm", "in" or "ft", for files that do not tell; metres
         where left out, and then a baseline beyond 10 m is an error.
     cameras : names of the left and the right camera in a file with more than two: `["cam0", "cam3"]` of a
-        Kalibr chain or a Basalt calibration, two images of a COLMAP model. The first two where left out.
+        Kalibr chain or a Basalt calibration, two images of a COLMAP model. A file with more than two is asked
+        about where they are left out, but for KITTI's, COLMAP's and OAK's, which have a first pair.
 
     Formats: see `calibration_formats`; each has a module in `rectbench.calibrations.formats` that says what
     it reads. The first camera of a file, or of a list, is the left one; cameras are never swapped, and a

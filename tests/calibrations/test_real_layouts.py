@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rectbench import Rig, load_rig
+from rectbench import InvalidInput, Rig, load_rig
 
 FOLDER = "calibrations-that-fail"
 DOUBLE = (2.0, 0.0, 0.0)
@@ -96,3 +96,16 @@ def test_an_oak_s_tilted_sensor_is_read(layouts: Path, truth: dict[str, np.ndarr
 def test_boofcv_s_fourth_radial_coefficient_is_read(layouts: Path) -> None:
     rig = load(layouts, "boofcv_zed_4radial.yaml")
     assert (rig.left.model, rig.left.params["k4"]) == ("radial-tangential", -0.0029503)
+
+
+@pytest.mark.parametrize("names", [("cam0", "cam2"), None])
+def test_of_kalibr_s_three_cameras_two_are_asked_for(
+    layouts: Path, truth: dict[str, np.ndarray], names: tuple[str, str] | None
+) -> None:
+    if names is None:
+        with pytest.raises(InvalidInput, match=r"holds 3 cameras; .*cam0,cam2 \(baseline 0.064 m"):
+            load_rig(layouts / "kalibr3.yaml")
+        return
+    rig = load_rig(layouts / "kalibr3.yaml", cameras=names)
+    np.testing.assert_allclose(rig.R_right_left, truth["R"], atol=1e-9)
+    np.testing.assert_allclose(rig.t_right_left, truth["t"], atol=1e-9)

@@ -19,6 +19,7 @@ TOLD = {
     "opencv-sections": "taken for a pinhole's k1 k2 p1 p2",
     "ros-fisheye-today": "K R in them, as ROS' calibrator of fisheyes writes them",
     "ros-fisheye-own-focal": "own focal length in them",
+    "kitti-rectified": "holds 3 cameras; 0 and 1 are taken, others by `cameras=`",
 }
 """Of which examples something is assumed, and what."""
 

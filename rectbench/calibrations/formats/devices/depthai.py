@@ -12,7 +12,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from rectbench.calibrations.assembling import chosen, rig_of_posed, rigid, single
+from rectbench.calibrations.assembling import Pair, chosen, rig_of_posed, rigid, single
 from rectbench.calibrations.consistency import compare_rotations, rotation_in
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents import Section, Source, finite_number
@@ -31,24 +31,30 @@ def _read(sources: Sequence[Source], given: Given) -> Rig:
     source = single(sources)
     source.document.knows("stereoEnableDistortionCorrection", "stereoUseSpecTranslation")  # of the device
     cameras = _cameras(source.document)
-    names = chosen(_left_and_right_first(source.document, list(cameras)), given, source.path)
-    placed = [_to_last(cameras, name) for name in names]
-    if placed[0][0] != placed[1][0]:
-        first, second = (cameras[name].at("extrinsics") for name in names)
-        raise InvalidInput(f"{first} and {second} end at different cameras; expected one chain of both")
-    posed = [_read_posed(cameras[name], T, given) for name, (_, T) in zip(names, placed, strict=True)]
-    rig = rig_of_posed(posed, given, source.name, unit="cm")
-    _compare_rectification(source.document, names, rig)
+    pair = _rectified_pair(source.document)
+
+    def rig_of(names: Pair) -> Rig:
+        placed = [_to_last(cameras, name) for name in names]
+        if placed[0][0] != placed[1][0]:
+            first, second = (cameras[name].at("extrinsics") for name in names)
+            raise InvalidInput(f"{first} and {second} end at different cameras; expected one chain of both")
+        posed = [_read_posed(cameras[name], T, given) for name, (_, T) in zip(names, placed, strict=True)]
+        return rig_of_posed(posed, given, source.name, unit="cm")
+
+    if given.cameras is None and len(pair) == 2 and set(pair) <= cameras.keys():
+        names = (pair[0], pair[1])
+    else:
+        names = chosen(list(cameras), given, source.path, rig_of)
+    rig = rig_of(names)
+    if list(names) == pair:
+        _compare_rectification(source.document.section(STEREO, "the sockets of left and right"), rig)
     return rig
 
 
-def _compare_rectification(file: Section, names: tuple[str, str], rig: Rig) -> None:
+def _compare_rectification(stereo: Section, rig: Rig) -> None:
     """The rotations to the rectified frame, of the pair that the file itself rectifies, hold the pose too."""
-    if STEREO not in file:
-        return
-    stereo = file.section(STEREO, "the sockets of left and right")
     R1, R2 = (rotation_in(stereo, f"rectifiedRotation{side}") for side in ("Left", "Right"))
-    if R1 is not None and R2 is not None and list(names) == _rectified_pair(stereo):
+    if R1 is not None and R2 is not None:
         where = stereo.at("rectifiedRotationLeft")
         compare_rotations(where, R2.T @ R1, rig.R_right_left, "the cameras' extrinsics")
 
@@ -72,15 +78,11 @@ def _socket(number: float) -> str:
     return f"CAM_{chr(ord('A') + int(number))}" if known else f"{number:g}"
 
 
-def _left_and_right_first(file: Section, names: list[str]) -> list[str]:
-    if STEREO not in file:
-        return names
-    sockets = _rectified_pair(file.section(STEREO, "the sockets of left and right"))
-    return sorted(names, key=lambda name: sockets.index(name) if name in sockets else len(sockets))
-
-
-def _rectified_pair(stereo: Section) -> list[str]:
+def _rectified_pair(file: Section) -> list[str]:
     """The sockets of the left and the right camera, as far as the file names them."""
+    if STEREO not in file:
+        return []
+    stereo = file.section(STEREO, "the sockets of left and right")
     pair = [finite_number(stereo.values.get(f"{side}CameraSocket")) for side in ("left", "right")]
     return [_socket(number) for number in pair if number is not None]
 

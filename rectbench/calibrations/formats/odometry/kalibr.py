@@ -21,12 +21,12 @@ from typing import Any
 import numpy as np
 
 from rectbench.calibrations.assembling import assembled, camera_of, inverse, pose_matrix, single
+from rectbench.calibrations.choosing import Pair, chosen
 from rectbench.calibrations.contract import Given, RigFormat
-from rectbench.calibrations.documents import Section, Source, shown
+from rectbench.calibrations.documents import Section, Source
 from rectbench.calibrations.formats.toolboxes.opencv_keys import MATRIX
 from rectbench.calibrations.layouts import layout_of
 from rectbench.cameras import Camera
-from rectbench.errors import InvalidInput
 from rectbench.rigs.file_formats import Writing
 from rectbench.rigs.rig import Rig
 from rectbench.types import FloatArray
@@ -86,15 +86,20 @@ def _is_chain(source: Source) -> bool:
 
 
 def _read(sources: Sequence[Source], given: Given) -> Rig:
-    """The rig of cam0 (left) and cam1 (right), or of the two asked for; others are left out."""
+    """The rig of cam0 (left) and cam1 (right), or of the two asked for."""
     source = _chain(sources)
     chain = source.document
-    names = _chosen(chain, given)
-    expected = ("the first camera, the left one", "the second camera; a rig takes two")
-    sections = [chain.section(name, what) for name, what in zip(names, expected, strict=True)]
-    left, right = (_read_camera(section, given.size) for section in sections)
-    key, T = _read_pose(chain, *names)
-    return assembled(left, right, T, given, key, source.name)
+
+    def rig_of(names: Pair) -> Rig:
+        expected = ("the first camera, the left one", "the second camera; a rig takes two")
+        sections = [chain.section(name, what) for name, what in zip(names, expected, strict=True)]
+        left, right = (_read_camera(section, given.size) for section in sections)
+        key, T = _read_pose(chain, *names)
+        return assembled(left, right, T, given, key, source.name)
+
+    cameras = [key for key in chain.values if CAMERA.fullmatch(key)]
+    few = len(cameras) <= 2 and not given.cameras
+    return rig_of(("cam0", "cam1") if few else chosen(cameras, given, chain.file, rig_of))
 
 
 def _chain(sources: Sequence[Source]) -> Source:
@@ -105,15 +110,6 @@ def _chain(sources: Sequence[Source]) -> Source:
         config = single(configs)
         return config.beside(config.document.text(CONFIG, "the name of the cameras' file"))
     return single(chains if configs else sources)
-
-
-def _chosen(chain: Section, given: Given) -> tuple[str, str]:
-    names = given.cameras or ("cam0", "cam1")
-    for name in names:
-        if given.cameras and (name not in chain or not CAMERA.fullmatch(name)):
-            known = ", ".join(key for key in chain.values if CAMERA.fullmatch(key))
-            raise InvalidInput(f"{chain.file}: has no camera {shown(name)}; expected two of {known}")
-    return names
 
 
 def _read_pose(chain: Section, left: str, right: str) -> tuple[str, FloatArray]:

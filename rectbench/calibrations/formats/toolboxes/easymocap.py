@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from rectbench.calibrations.assembling import chosen, inverse, rig_of_posed, rigid
+from rectbench.calibrations.assembling import Pair, chosen, inverse, rig_of_posed, rigid
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents import Section, Source
 from rectbench.calibrations.formats.toolboxes.opencv import opencv_camera
@@ -30,9 +30,17 @@ def _read(sources: Sequence[Source], given: Given) -> Rig:
     if len(files) == 1:
         files += [first.beside(name) for start, name in FILES.items() if not _has(first, start)]
     intrinsics, extrinsics = (_holder(files, start) for start in FILES)
-    names = chosen(_names(intrinsics), given, intrinsics.path)
-    posed = [_read_posed(intrinsics.document, extrinsics.document, name, given) for name in names]
-    return rig_of_posed(posed, given, first.name)
+    known = _names(intrinsics)
+
+    def rig_of(names: Pair) -> Rig:
+        posed = [_read_posed(intrinsics.document, extrinsics.document, name, given) for name in names]
+        return rig_of_posed(posed, given, first.name)
+
+    names = chosen(known, given, intrinsics.path, rig_of)
+    for other in set(known) - set(names):
+        intrinsics.document.knows(f"K_{other}", f"dist_{other}", f"D_{other}")
+        extrinsics.document.knows(f"R_{other}", f"Rot_{other}", f"T_{other}")
+    return rig_of(names)
 
 
 def _holder(sources: Sequence[Source], start: str) -> Source:
