@@ -13,7 +13,7 @@ from rectbench.types import FloatArray
 ANGLE_DEG = 0.1
 """By how much two statements of one rotation may differ; files round to some 1e-5 rad."""
 
-SHARE = 0.01
+SHARE = 0.02
 """By how much two statements of one length may differ, relative to the larger."""
 
 
@@ -29,6 +29,19 @@ def compare_rotations(where: str, R: FloatArray, expected: FloatArray, what: str
     angle_deg = angle_between_deg(R, expected)
     if angle_deg > ANGLE_DEG:
         tell(f"{where} turns {angle_deg:.2f}° otherwise than {what}, which is kept to")
+
+
+def compare_lengths(where: str, length: float, t: FloatArray, what: str) -> None:
+    """Tell where a baseline's length, said at `where`, is not that of `t` [3], the translation of `what`."""
+    expected = float(np.linalg.norm(t))
+    if abs(length - expected) > SHARE * max(length, expected):
+        tell(f"{where} is a baseline of {length:.6g}, but {what} one of {expected:.6g}, which is kept to")
+
+
+def compare_poses(where: str, T: FloatArray, expected: FloatArray, what: str) -> None:
+    """Tell where the pose [4, 4] said at `where` has another rotation or baseline than that of `what`."""
+    compare_rotations(where, T[:3, :3], expected[:3, :3], what)
+    compare_lengths(where, float(np.linalg.norm(T[:3, 3])), expected[:3, 3], what)
 
 
 def rotation_in(section: Section, key: str) -> FloatArray | None:

@@ -13,6 +13,7 @@ from rectbench.calibrations.built_in_rigs import built_in_rig, may_be_rig_name
 from rectbench.calibrations.contract import CameraFormat, Given, RigFormat
 from rectbench.calibrations.documents import Source, checked_size, one_line, shown, tell, telling
 from rectbench.calibrations.documents.sources import is_folder, sources_in
+from rectbench.calibrations.plausibility import tell_implausible
 from rectbench.calibrations.recognising import calibration_formats, camera_format, formats, is_known
 from rectbench.calibrations.unread import tell_unread
 from rectbench.errors import InvalidInput
@@ -105,6 +106,7 @@ def _read_sources(sources: list[Source], given: Given) -> Rig:
                 source.forget()
             rig = _read_by(format, sources, given)
             tell_unread(sources, rig)
+            tell_implausible(rig)
             return rig
     _ = [source.document for source in sources]  # what is damaged says so itself
     raise InvalidInput(f"{sources[0].path}: is no calibration known here; expected {_expected()}")

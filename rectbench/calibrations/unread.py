@@ -72,13 +72,14 @@ def _has_no_distortion(rig: Rig) -> bool:
 
 def _unread(entries: Entries, path: str) -> Iterator[tuple[str, bool]]:
     """The paths of unread keys of lens or pose below a mapping, and whether each is a distortion."""
-    children = [value for key, value in entries.items() if _is_held(key)]
+    children = [value for key, value in entries.items() if _is_held(key) and not _is_matrix(value)]
     for key, value in entries.items():
-        if not _is_held(key) or _is_blank(value):
+        is_read_leaf = key in entries.asked and not isinstance(value, dict | list)
+        if is_read_leaf or not _is_held(key) or _is_blank(value):
             continue
         if key in entries.asked and not _is_untouched(value):
             yield from _below(value, f"{path}{key}")
-        elif not _is_other_camera(value, children):
+        elif _is_matrix(value) or not _is_other_camera(value, children):
             yield from _lens_or_pose(key, value, path)
 
 
@@ -86,7 +87,7 @@ def _below(value: Any, path: str) -> Iterator[tuple[str, bool]]:
     """The same of a key's value that was asked for."""
     if isinstance(value, Entries):
         yield from _unread(value, f"{path}.")
-    elif isinstance(value, list):
+    elif isinstance(value, list) and _holds_mapping(value):
         for place, item in enumerate(value):
             if isinstance(item, Entries | list) and not _is_other_camera(item, value):
                 yield from _below(item, f"{path}.{place}")
@@ -95,7 +96,7 @@ def _below(value: Any, path: str) -> Iterator[tuple[str, bool]]:
 def _lens_or_pose(key: str, value: Any, path: str) -> Iterator[tuple[str, bool]]:
     """What of an unread key, or below it, is of a lens or a pose."""
     words = words_of(key)
-    if isinstance(value, Entries) and not (value.keys() & {"data", "rows", "cols"}):
+    if isinstance(value, Entries) and not _is_matrix(value):
         inner = [one for name, item in value.items() if not _is_blank(item) and _is_held(name)
                  for one in _lens_or_pose(name, item, f"{path}{key}.")]  # fmt: skip
         is_part = bool(DISTORTION.intersection(words)) or any(is_distortion for _, is_distortion in inner)
@@ -109,7 +110,7 @@ def _lens_or_pose(key: str, value: Any, path: str) -> Iterator[tuple[str, bool]]
         yield f"{path}{key}", _is_distortion(key, value, words)
 
 
-def _names_lens_or_pose(key: str, value: Any, words: list[str]) -> bool:
+def _names_lens_or_pose(key: str, value: Any, words: frozenset[str]) -> bool:
     if isinstance(value, str) and finite_number(value) is None and LENS_WORDS.search(value):
         return True
     if TYPES.intersection(words):
@@ -119,16 +120,26 @@ def _names_lens_or_pose(key: str, value: Any, words: list[str]) -> bool:
     return bool(SHORT.fullmatch(bare(key)))
 
 
-def _is_distortion(key: str, value: Any, words: list[str]) -> bool:
+def _is_distortion(key: str, value: Any, words: frozenset[str]) -> bool:
     """Whether a key is one of coefficients: not zero, and no word."""
     is_number = finite_number(value) is not None or isinstance(value, dict | list)
     is_coefficient = COEFFICIENT.fullmatch(bare(key)) or "D" in WORD.findall(key)
     return is_number and bool(DISTORTION.intersection(words) or is_coefficient)
 
 
+def _holds_mapping(value: list[Any]) -> bool:
+    """Whether there are mappings in a list, or in a list inside it."""
+    return any(isinstance(v, dict) or (isinstance(v, list) and _holds_mapping(v)) for v in value)
+
+
+def _is_matrix(value: Any) -> bool:
+    """Whether a value is a matrix as OpenCV and ROS write one."""
+    return isinstance(value, dict) and "data" in value
+
+
 def _is_held(key: str) -> bool:
     """Whether a key is about cameras; those of other sensors, of errors and boards are not looked into."""
-    return not OTHERS.intersection(words_of(key))
+    return OTHERS.isdisjoint(words_of(key))
 
 
 def _is_blank(value: Any) -> bool:
@@ -137,7 +148,7 @@ def _is_blank(value: Any) -> bool:
         data = dict.get(value, "data", value)
         return _is_blank(data) if data is not value else all(map(_is_blank, value.values()))
     if isinstance(value, list):
-        return all(map(_is_blank, value))
+        return all(map(_is_blank, value))  # ends at the first that says something
     return value in ("", None, "null", "~", False) or finite_number(value) == 0
 
 
@@ -149,12 +160,8 @@ def _is_untouched(value: Any) -> bool:
 def _asked(value: Any) -> int:
     """How many keys of a value were asked for, at any depth."""
     if isinstance(value, Entries):
-        return len(value.asked) + sum(
-            _asked(item) for item in value.values() if isinstance(item, dict | list)
-        )
-    if isinstance(value, list):
-        return sum(_asked(item) for item in value if isinstance(item, dict | list))
-    return 0
+        return len(value.asked) + sum(map(_asked, value.values()))
+    return sum(map(_asked, value)) if isinstance(value, list) and _holds_mapping(value) else 0
 
 
 def _is_other_camera(value: Any, siblings: Sequence[Any]) -> bool:

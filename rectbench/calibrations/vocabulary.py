@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import lru_cache
 
 DISTORTION = frozenset(
     (
@@ -93,9 +94,10 @@ WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+")
 """A word of a key in snake_case, camelCase or CAPITALS."""
 
 
-def words_of(key: str) -> list[str]:
+@lru_cache(maxsize=4096)
+def words_of(key: str) -> frozenset[str]:
     """The words of a key, in small letters."""
-    return [word.lower() for word in WORD.findall(key)]
+    return frozenset(word.lower() for word in WORD.findall(key))
 
 
 def bare(key: str) -> str:

@@ -34,6 +34,15 @@ def as_entries(content: Any) -> Any:
     return [as_entries(item) for item in content] if isinstance(content, list) else content
 
 
+def take(content: Any) -> None:
+    """Count all keys of the content, at any depth, as read."""
+    if isinstance(content, Entries):
+        content.asked.update(content)
+    if isinstance(content, dict | list):
+        for value in content.values() if isinstance(content, dict) else content:
+            take(value)
+
+
 def forget(content: Any) -> None:
     """Count no key of the content, at any depth, as read."""
     if isinstance(content, Entries):

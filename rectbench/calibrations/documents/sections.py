@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from rectbench.calibrations.documents.entries import take
 from rectbench.calibrations.documents.faults import errors_at, one_line, shown
 from rectbench.calibrations.documents.numbers import agreed_size, checked_size, finite_number, flat_numbers
 from rectbench.calibrations.documents.parsing import Malformed, parse
@@ -69,7 +70,7 @@ class Section:
         """Count the keys by these patterns as read: the reader knows that they tell nothing that it wants."""
         for key in self.values:
             if any(fnmatchcase(key, pattern) for pattern in patterns):
-                self.values.get(key)
+                take(self.values[key])
 
     def section(self, key: str, expected: str) -> Section:
         """The mapping under `key`."""

@@ -154,7 +154,7 @@ def boofcv_four() -> Example:
     """With a fourth radial coefficient, of r⁸, as its calibration of wide lenses estimates it."""
     content = yaml.safe_load(boofcv().files["stereo.yaml"])
     rig = PINHOLES
-    for side, k4 in (("left", -0.003), ("right", 0.002)):
+    for side, k4 in (("left", -0.0003), ("right", 0.0002)):
         content[side]["radial_tangential"]["radial"] += [0.009, k4]
         params = {**getattr(rig, side).params, "k3": 0.009, "k4": k4}
         params = {n: v for n, v in params.items() if n in (*FOCAL, "k1", "k2", "k3", "k4", "p1", "p2")}
@@ -169,6 +169,7 @@ def opencv(suffix: str) -> Example:
 def opencv_samples() -> Example:
     """samples/cpp/stereo_calib.cpp: no image size, a file for the pose, here with squares in millimetres."""
     R1, R2, P1, P2 = rectification()
+    P2[0, 3] *= 1000
     rectified = {"R1": R1, "R2": R2, "P1": P1, "P2": P2, "Q": np.eye(4)}
     distortion = {"D1": np.array([[*RADTAN1, 0.0]]), "D2": np.array([[*RADTAN2, 0.0]])}
     files = {

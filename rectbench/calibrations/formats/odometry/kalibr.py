@@ -22,6 +22,7 @@ import numpy as np
 
 from rectbench.calibrations.assembling import assembled, camera_of, inverse, pose_matrix, single
 from rectbench.calibrations.choosing import Pair, chosen
+from rectbench.calibrations.consistency import compare_poses
 from rectbench.calibrations.contract import Given, RigFormat
 from rectbench.calibrations.documents import Section, Source
 from rectbench.calibrations.formats.toolboxes.opencv_keys import MATRIX
@@ -125,7 +126,11 @@ def _read_pose(chain: Section, left: str, right: str) -> tuple[str, FloatArray]:
     T = np.eye(4)
     for link in links:
         T = link.rigid("T_cn_cnm1", "the pose from the camera before to this one, metres") @ T
-    return chain.at(f"{last}.T_cn_cnm1"), T if first == left else inverse(T)
+    T = T if first == left else inverse(T)
+    if all(key in end for key in IMU_KEYS[:1] for end in ends):
+        T_left_imu, T_right_imu = (_from_imu(end) for end in ends)
+        compare_poses(f"{chain.at(right)}.T_cam_imu", T_right_imu @ inverse(T_left_imu), T, "T_cn_cnm1")
+    return chain.at(f"{last}.T_cn_cnm1"), T
 
 
 def _from_imu(camera: Section) -> FloatArray:

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from rectbench.calibrations.assembling import Pair, chosen, inverse, rig_of_posed, rigid
+from rectbench.calibrations.consistency import compare_rotations
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents import Section, Source
 from rectbench.calibrations.formats.toolboxes.opencv import opencv_camera
@@ -67,6 +68,9 @@ def _read_posed(intrinsics: Section, extrinsics: Section, name: str, given: Give
     size = intrinsics.sides(f"W_{name}", f"H_{name}", given.size)
     camera = opencv_camera(intrinsics, f"K_{name}", key, "pinhole", size)
     R = read_rotation(extrinsics, f"Rot_{name}" if f"Rot_{name}" in extrinsics else f"R_{name}")
+    if f"R_{name}" in extrinsics:
+        again = read_rotation(extrinsics, f"R_{name}")
+        compare_rotations(extrinsics.at(f"R_{name}"), again, R, f"Rot_{name}")
     t = extrinsics.array(f"T_{name}", "three metres", (3,))
     return PosedCamera(extrinsics.at(f"T_{name}"), camera, inverse(rigid(R, t)))
 

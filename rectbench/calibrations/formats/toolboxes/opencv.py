@@ -35,8 +35,10 @@ import cv2
 import numpy as np
 
 from rectbench.calibrations.assembling import assembled, camera_of, rigid
+from rectbench.calibrations.consistency import compare_lengths, compare_rotations, rotation_in
 from rectbench.calibrations.contract import Given, RigFormat
 from rectbench.calibrations.documents import Section, Source, agreed_size, shown, tell
+from rectbench.calibrations.documents.numbers import flat_numbers
 from rectbench.calibrations.formats.toolboxes.opencv_keys import (
     DISTORTION,
     FLAGS,
@@ -151,7 +153,20 @@ def _read(sources: Sequence[Source], given: Given) -> Rig:
     files = Files([part for source in sources for part in parts_of(source.document)])
     left, right = (_read_camera(files, number, given.size) for number in (1, 2))
     where, T = _read_pose(files)
+    _compare_rectification(files, T)
     return assembled(left, right, T, given, f"{files}: {where}", sources[0].name)
+
+
+def _compare_rectification(files: Files, T: FloatArray) -> None:
+    """R1 and R2 of `stereoRectify` hold the rotation too, and P2 the length of the translation."""
+    for document in files.documents:
+        document.knows("P1", "Q")
+        R1, R2 = (rotation_in(document, key) for key in ("R1", "R2"))
+        if R1 is not None and R2 is not None:
+            compare_rotations(document.at("R1"), R2.T @ R1, T[:3, :3], "R")
+        P2 = flat_numbers(document.values.get("P2"))
+        if P2 is not None and len(P2) == 12 and P2[0] > 0 and P2[3] != 0:
+            compare_lengths(f"{document.at('P2')}[0, 3] / P2[0, 0]", abs(P2[3] / P2[0]), T[:3, 3], "T")
 
 
 def _read_pose(files: Files) -> tuple[str, FloatArray]:
