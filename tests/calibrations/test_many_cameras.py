@@ -26,6 +26,8 @@ RIGHT_AND_LEFT = {
     "anipose-caliscope": ("1", "0"),
     "mccalib": ("camera_1", "camera_0"),
     "easymocap": ("2", "1"),
+    "multical": ("cam2", "cam1"),
+    "multical-master": ("cam2", "cam1"),
     "kitti": ("01", "00"),
     "kitti-rectified": ("P1", "P0"),
 }

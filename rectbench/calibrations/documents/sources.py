@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import io
 import os
 import re
 from collections.abc import Iterator
@@ -10,7 +11,9 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-from rectbench.calibrations.documents.faults import shown
+from rectbench.calibrations.documents.archives import MARK, parse_archive
+from rectbench.calibrations.documents.faults import one_line, shown
+from rectbench.calibrations.documents.parsing import Malformed, parse
 from rectbench.calibrations.documents.sections import Section, parse_document
 from rectbench.errors import InvalidInput
 
@@ -19,6 +22,7 @@ MAX_BYTES = 1 << 22
 
 SUFFIXES = {
     *(".yaml", ".yml", ".xml", ".json", ".toml", ".txt", ".bin", ".cameramodel", ".cfg", ".conf", ".ini", ""),
+    *(".npz",),
 }
 """What calibrations are called; in a folder, other files are not looked at."""
 
@@ -86,8 +90,32 @@ class Source:
 
     @cached_property
     def document(self) -> Section:
-        """The YAML, JSON or XML that the file holds; raises InvalidInput where it holds none."""
+        """The YAML, JSON, XML or .npz that the file holds; raises InvalidInput where it holds none."""
+        if self.content.startswith(MARK):
+            return self._archive()
         return parse_document(self.text, self.path)
+
+    def _archive(self) -> Section:
+        try:
+            if len(self.content) <= MAX_BYTES:
+                return Section(self.path, "", parse_archive(io.BytesIO(self.content)))
+            with Path(self.path).open("rb") as stream:  # whose maps and images are not read
+                return Section(self.path, "", parse_archive(stream))
+        except (Malformed, OSError) as error:
+            raise InvalidInput(f"{self.path}: {one_line(error)}; expected NumPy's K1, D1, ...") from None
+
+    @cached_property
+    def records(self) -> tuple[Section, ...]:
+        """The mappings of a file that is a list of them, as tables are written in JSON; none of another."""
+        if not self.head.lstrip().startswith("["):
+            return ()
+        try:
+            content = parse(self.text)
+        except (Malformed, InvalidInput):
+            return ()
+        if not isinstance(content, list) or not all(isinstance(record, dict) for record in content):
+            return ()
+        return tuple(Section(self.path, f"[{place}].", record) for place, record in enumerate(content))
 
     def table(self, mark: str) -> Section:
         """The lines `key mark words` by key: a word, or a list of several, without brackets and commas."""

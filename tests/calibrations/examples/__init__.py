@@ -4,7 +4,7 @@ Two lenses differ in every number, the pose turns about all three axes, and the 
 refer to stands askew, so that no transposed, inverted or swapped reading can pass.
 """
 
-from tests.calibrations.examples import datasets, odometry, toolboxes
+from tests.calibrations.examples import datasets, exports, odometry, toolboxes
 from tests.calibrations.examples.datasets import ros_text
 from tests.calibrations.examples.made_up import (
     FISHEYES,
@@ -18,7 +18,12 @@ from tests.calibrations.examples.made_up import (
 )
 from tests.calibrations.examples.toolboxes import AFFINE1, POLY1, ocam_camera
 
-EXAMPLES: dict[str, Example] = {**odometry.EXAMPLES, **toolboxes.EXAMPLES, **datasets.EXAMPLES}
+EXAMPLES: dict[str, Example] = {
+    **odometry.EXAMPLES,
+    **toolboxes.EXAMPLES,
+    **datasets.EXAMPLES,
+    **exports.EXAMPLES,
+}
 """By the name of the format, with what tells its variants apart."""
 
 __all__ = [
