@@ -15,7 +15,7 @@ from collections.abc import Sequence
 from rectbench.calibrations.assembling import camera_of, rigid, single
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents import Section, Source
-from rectbench.calibrations.named_cameras import by_name, quaternion_rotation, rig_of_named
+from rectbench.calibrations.named_cameras import by_name, quaternion_rotation, refuse_unread, rig_of_named
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig
 from rectbench.types import FloatArray
@@ -53,7 +53,9 @@ def _turn(label: str) -> int:
 def _read_posed(section: Section, size: tuple[int, int]) -> PosedCamera:
     if section.values.get("Calibrated", True) is not True:
         raise section.fault("Calibrated", "true")
+    refuse_unread(section, ())
     projection = section.section("Projection", "Name and Params")
+    projection.only(("Name", "Params", "Description", "ProjectionModel"))
     name = projection.choice("Name", MODELS)
     model, names = MODELS[name]
     params = projection.named("Params", names)

@@ -33,7 +33,7 @@ import numpy as np
 from rectbench.calibrations.assembling import camera_of, inverse, rigid, single
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents import Section, Source, errors_at
-from rectbench.calibrations.named_cameras import by_name, rig_of_named, told_scale
+from rectbench.calibrations.named_cameras import by_name, refuse_unread, rig_of_named, told_scale
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig, checked_rotation
@@ -59,6 +59,16 @@ TYPES = {
     "fisheye1": "fisheye1",
 }
 """The distortion of each type, where `distortionType` does not say it."""
+
+INTRINSIC_KEYS = (
+    *("intrinsicId", "width", "height", "sensorWidth", "sensorHeight", "serialNumber", "type", "locked"),
+    *("initializationMode", "initialFocalLength", "pxInitialFocalLength", "focalLength", "pxFocalLength"),
+    *("pixelRatio", "pixelRatioLocked", "offsetLocked", "scaleLocked", "principalPoint"),
+    *("distortionInitializationMode", "distortionParams", "distortionLocked", "distortionType"),
+    *("undistortionOffset", "undistortionParams", "undistortionType"),
+)
+VIEW_KEYS = ("viewId", "poseId", "rigId", "subPoseId", "intrinsicId", "isPoseIndependant", "frameId")
+"""Those of every version's intrinsics and views that say anything of a lens or a pose."""
 
 Version = tuple[float, ...]
 
@@ -105,6 +115,7 @@ def _views(file: Section) -> list[tuple[str, _View]]:
     poses, rigs = _by_number(file, "poses", "poseId"), _by_number(file, "rigs", "rigId")
     found = []
     for number, view in _by_number(file, "views", "viewId").items():
+        refuse_unread(view, VIEW_KEYS)
         pose = poses.get(_number(view, "poseId"))
         if pose is None:
             continue
@@ -112,6 +123,8 @@ def _views(file: Section) -> list[tuple[str, _View]]:
         is_of_rig = "rigId" in view and str(view.values.get("isPoseIndependant", "true")).lower() in "false0"
         if is_of_rig:
             T = _sub_pose(view, rigs) @ T
+        elif "subPoseId" in view and "rigId" not in view:
+            raise view.fault("rigId", "the rig of its subPoseId")
         path = str(view.values.get("path") or number)
         found.append((path, _View(view.where, _number(view, "intrinsicId"), T)))
     return found
@@ -134,6 +147,7 @@ def _transform(section: Section) -> FloatArray:
 
 
 def _camera(section: Section, version: Version, given: Given) -> Camera:
+    refuse_unread(section, INTRINSIC_KEYS)
     kind = section.choice("type", TYPES)
     distortion = section.choice("distortionType", DISTORTIONS, TYPES[kind])
     if distortion != TYPES[kind] and kind != "pinhole":

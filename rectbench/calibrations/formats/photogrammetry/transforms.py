@@ -25,7 +25,13 @@ from collections.abc import Sequence
 from rectbench.calibrations.assembling import camera_of, single
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents import Section, Source, shown
-from rectbench.calibrations.named_cameras import Y_UP_Z_BACK, by_name, rig_of_named, told_scale
+from rectbench.calibrations.named_cameras import (
+    Y_UP_Z_BACK,
+    by_name,
+    refuse_unread,
+    rig_of_named,
+    told_scale,
+)
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig
@@ -37,12 +43,24 @@ MODELS = (*PERSPECTIVE, "OPENCV_FISHEYE")
 ORDERS = {"pinhole": ("k1", "k2", "k3", "p1", "p2"), "kannala-brandt": ("k1", "k2", "k3", "k4")}
 DISTORTION = ("k1", "k2", "k3", "k4", "p1", "p2")
 F_THETA = tuple(f"ftheta_p{power}" for power in range(6))
+FORWARD = tuple(f"ftheta_f{power}" for power in range(6))
+"""The fit of the distance by powers of the angle, which some add and neither program takes."""
+
+REFERENCE = "PIXELDIST_TO_ANGLE"
+"""Which way the polynomial of an f-theta lens goes, in files that say it."""
+
 PANORAMAS = ("latlong", "equirectangular", "orthographic")
 LENS = (
     *("camera_model", "is_fisheye", "w", "h", "fl_x", "fl_y", "cx", "cy", "camera_angle_x", "camera_angle_y"),
-    *("x_fov", "y_fov", *DISTORTION, *F_THETA, *PANORAMAS, "k5", "k6"),
+    *("x_fov", "y_fov", *DISTORTION, *F_THETA, *PANORAMAS, "k5", "k6", "reference_poly"),
 )
 """The keys of a lens, at the top or in a frame."""
+
+OTHER_KEYS = (
+    *("transform_matrix", "transform_matrix_start", "transform_matrix_end", "orientation_override", "offset"),
+    *("applied_transform", "applied_scale", *FORWARD),
+)
+"""What else may look like a key of a lens or a pose; `offset` places the scene in instant-ngp's cube."""
 
 AGREEMENT = 1e-3
 """Relative difference up to which a field of view and a focal length say the same."""
@@ -69,6 +87,8 @@ def _read_posed(file: Section, frame: Section, given: Given) -> PosedCamera:
 
 def _lens(file: Section, frame: Section) -> Section:
     """The keys of the frame's lens, its own and the file's, which may not disagree."""
+    for section in (file, frame):
+        refuse_unread(section, (*LENS, *OTHER_KEYS))
     values = {key: file.values[key] for key in LENS if key in file}
     for key in LENS:
         if key in frame and values.setdefault(key, frame.values[key]) != frame.values[key]:
@@ -98,7 +118,10 @@ def _camera(lens: Section, given: Given) -> Camera:
 
 
 def _angle_poly(lens: Section) -> list[float]:
-    constant, *poly = (lens.number(key, "a coefficient") if key in lens else 0.0 for key in F_THETA)
+    if lens.values.get("reference_poly", REFERENCE) != REFERENCE:
+        raise lens.fault("reference_poly", REFERENCE)
+    keys = F_THETA if F_THETA[-1] in lens else F_THETA[:-1]  # instant-ngp's own have five
+    constant, *poly = (lens.number(key, "a coefficient") for key in keys)
     if constant != 0:
         raise lens.fault(F_THETA[0], "0, the angle at the centre")
     return poly

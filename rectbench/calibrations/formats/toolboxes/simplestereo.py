@@ -39,6 +39,8 @@ def _read(sources: Sequence[Source], given: Given) -> Rig:
 def _read_camera(file: Section, number: int, given: Given) -> Camera:
     size = file.size(f"res{number}", given.size)
     matrix, distortion = f"intrinsic{number}", f"distCoeffs{number}"
+    if distortion not in file:
+        raise file.fault(distortion, "OpenCV's coefficients, or null")
     return opencv_camera(file, matrix, distortion, "pinhole", size, counts=(0, *COUNTS["pinhole"]))
 
 

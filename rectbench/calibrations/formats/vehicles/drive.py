@@ -19,7 +19,7 @@ from rectbench.calibrations.assembling import rigid, single
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents import Section, Source, finite_number
 from rectbench.calibrations.formats.vehicles.f_theta_keys import f_theta_camera
-from rectbench.calibrations.named_cameras import by_name, rig_of_named
+from rectbench.calibrations.named_cameras import by_name, refuse_unread, rig_of_named
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig
 from rectbench.types import FloatArray
@@ -30,6 +30,7 @@ ANGLES = "roll-pitch-yaw"
 TYPES = {"pixeldistance-to-angle": True, "angle-to-pixeldistance": False}
 """Whether a polynomial of this type is one in the distance."""
 
+POLYNOMIALS = ("polynomial", "bw-poly", "fw-poly")
 LINEAR = {"linear-c": 1.0, "linear-d": 0.0, "linear-e": 0.0}
 R_FLU_CAMERA = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
 """Turns a camera of x right, y down, z forward into the sensor's frame: x forward, y left, z up."""
@@ -53,10 +54,12 @@ def _is_camera(sensor: Section) -> bool:
 
 def _read_posed(sensor: Section, given: Given) -> PosedCamera:
     properties = sensor.section("properties", "the lens")
+    refuse_unread(sensor, ("properties", POSE, TURN, SHIFT))
+    refuse_unread(properties, ("Model", "cx", "cy", "polynomial-type", *POLYNOMIALS, *LINEAR))
     properties.choice("Model", ("ftheta",))
     size = properties.sides("width", "height", given.size)
     centre = (properties.number("cx", "pixels") - 0.5, properties.number("cy", "pixels") - 0.5)
-    key = next((key for key in ("polynomial", "bw-poly", "fw-poly") if key in properties), "polynomial")
+    key = next((key for key in POLYNOMIALS if key in properties), POLYNOMIALS[0])
     known = {"bw-poly": True, "fw-poly": False}
     by_distance = known[key] if key in known else TYPES[properties.choice("polynomial-type", TYPES)]
     linear = [

@@ -16,7 +16,7 @@ from rectbench.calibrations.assembling import camera_of, inverse
 from rectbench.calibrations.contract import CameraFormat, Given, PosedCamera
 from rectbench.calibrations.documents import Section, Source, agreed_size, errors_at
 from rectbench.calibrations.formats.vehicles.f_theta_keys import f_theta_camera
-from rectbench.calibrations.named_cameras import Y_UP_Z_BACK
+from rectbench.calibrations.named_cameras import Y_UP_Z_BACK, refuse_unread
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import checked_rotation
@@ -26,19 +26,31 @@ POLYNOMIAL = "cameraFisheyePolynomial"
 VIEW = "cameraViewTransform"
 NOMINAL = ("cameraFisheyeNominalWidth", "cameraFisheyeNominalHeight")
 OFFSET = "cameraApertureOffset"
+RESOLUTION = "renderProductResolution"
 MAX_COEFFICIENTS = 12
+KEYS = (
+    *(POLYNOMIAL, VIEW, *NOMINAL, OFFSET, RESOLUTION, "cameraModel", "cameraFisheyeOpticalCentre"),
+    *(
+        "cameraFisheyeMaxFOV",
+        "cameraFisheyeLensP",
+        "cameraFisheyeLensS",
+        "cameraAperture",
+        "cameraFocalLength",
+    ),
+    *("cameraFocusDistance", "cameraFStop", "cameraNearFar", "cameraProjection", "cameraProjectionType"),
+    *("cameraOpenCVFx", "cameraOpenCVFy"),
+)
+"""Those of the annotator; some are of models that are refused."""
 
 
 def read_posed(source: Source, given: Given) -> PosedCamera:
     """The camera in the file, posed in the scene, metres."""
     file = source.document
+    refuse_unread(file, KEYS)
     size = agreed_size(file.at(RESOLUTION), file.numbers(RESOLUTION, "[width, height]", 2), given.size)
     kind = file.choice("cameraModel", ("pinhole", "fisheyePolynomial"))
     camera = _pinhole(file, size) if kind == "pinhole" else _fisheye(file, size)
     return PosedCamera(source.path, camera, _pose(file))
-
-
-RESOLUTION = "renderProductResolution"
 
 
 def _fisheye(file: Section, size: tuple[int, int]) -> Camera:

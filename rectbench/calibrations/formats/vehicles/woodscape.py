@@ -29,13 +29,14 @@ def read_posed(source: Source, given: Given) -> PosedCamera:
     size = lens.sides("width", "height", given.size)
     offsets = [lens.number(f"c{axis}_offset", "pixels") for axis in "xy"]
     centre = (offsets[0] + (size[0] - 1) / 2, offsets[1] + (size[1] - 1) / 2)
-    aspect = lens.number("aspect_ratio", "a number above 0") if "aspect_ratio" in lens else 1.0
+    aspect = lens.number("aspect_ratio", "a number above 0")
     if not aspect > 0:
         raise lens.fault("aspect_ratio", "a number above 0")
     # The aspect stretches v, where [c d; e 1] stretches u: both by 1/aspect, and the radius by as much more.
     poly = [0.0, *(aspect * lens.number(name, "pixels") for name in COEFFICIENTS)]
     camera = f_theta_camera(lens.where, size, centre, poly, by_distance=False, linear=(1 / aspect, 0.0, 0.0))
     pose = source.document.section("extrinsic", "quaternion and translation")
+    pose.only(("quaternion", "translation"))
     x, y, z, w = pose.numbers("quaternion", "x, y, z, w", 4)
     R = quaternion_rotation(pose.at("quaternion"), [w, x, y, z])
     return PosedCamera(source.path, camera, rigid(R, pose.numbers("translation", "three metres", 3)))
