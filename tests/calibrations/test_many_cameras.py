@@ -30,6 +30,8 @@ RIGHT_AND_LEFT = {
     "multical-master": ("cam2", "cam1"),
     "realsense": ("Fisheye 2", "Fisheye 1"),
     "realsense-d400": ("Infrared 2", "Infrared 1"),
+    "realsense-json": ("fisheye_2", "fisheye_1"),
+    "realsense-json-plain": ("right", "left"),
     "aria": ("camera-slam-right", "camera-slam-left"),
     "facebook360": ("cam1", "cam0"),
     "metashape-fisheye": ("right", "left"),

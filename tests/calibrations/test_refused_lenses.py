@@ -82,6 +82,22 @@ REFUSED: list[tuple[str, Change, str]] = [
     ("realsense", put("Coeffs:", "Coefficients:"), "Coeffs is missing; expected five distortion"),
     ("realsense", put('from "Fisheye 2"', 'from "Pose"'), 'has no Extrinsic from "Fisheye 1" to "Fisheye 2"'),
     ("realsense", put("PPX:", "CX:"), "PPX is missing; expected pixels"),
+    (
+        "realsense-json",
+        set_at("extrinsics", value={}),
+        "has no extrinsics of fisheye_1 and fisheye_2; expected",
+    ),
+    (
+        "realsense-json",
+        set_at("intrinsics", "fisheye_1", "model", value="omni"),
+        "model is 'omni'; expected None",
+    ),
+    ("realsense-json", set_at("intrinsics", "fisheye_1", "coeffs", value=[0.1]), "expected five distortion"),
+    (
+        "realsense-json-plain",
+        set_at("left", "intrinsics", "model", value="distortion.inverse_brown_conrady"),
+        "is Inverse Brown Conrady with",
+    ),
     ("aria", set_at(*FIRST_CAMERA, "Projection", "Name", value="Spherical"), "Name is 'Spherical'; expected"),
     (
         "aria",

@@ -62,7 +62,9 @@ def test_a_renamed_key_is_no_other_lens(tmp_path: Path, name: str, caplog: pytes
         for place in range(len(list(keys(read(text))))):
             content = copy.deepcopy(read(text))
             holder, key = list(keys(content))[place]
-            holder[f"{key}_x"] = holder.pop(key)
+            renamed = {f"{old}_x" if old == key else old: value for old, value in holder.items()}
+            holder.clear()
+            holder.update(renamed)
             path.write_text(write(content))
             check_rig_refusal_or_word(name, paths, f"{path.name}: {key} renamed", caplog, words)
         path.write_text(text)

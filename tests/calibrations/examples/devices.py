@@ -93,6 +93,36 @@ def realsense_d400() -> Example:
     return Example({"d435.txt": text}, PINHOLES, options={"size": SIZE})
 
 
+def rs2_stream(focal: list[float], model: str, numbers: list[float]) -> dict[str, Any]:
+    fx, fy, ppx, ppy = focal
+    return {
+        **{"width": SIZE[0], "height": SIZE[1], "fx": fx, "fy": fy, "ppx": ppx, "ppy": ppy},
+        **{"model": f"distortion.{model}", "coeffs": numbers},
+    }
+
+
+def realsense_json() -> Example:
+    """As people dump what pyrealsense2 gives of a T265; the rotation is stored by columns."""
+    streams = {
+        f"fisheye_{number}": rs2_stream(focal, "kannala_brandt4", [*D[0].tolist(), 0.0])
+        for number, focal, D in ((1, FOCAL1, D1), (2, FOCAL2, D2))
+    }
+    back = np.linalg.inv(T_RL)
+    pose = {"rotation": back[:3, :3].T.ravel().tolist(), "translation": back[:3, 3].tolist()}
+    content = {"serial": "1", "intrinsics": streams, "extrinsics": {"fisheye_2_to_fisheye_1": pose}}
+    return Example({"t265.json": json.dumps(content)}, FISHEYES)
+
+
+def realsense_json_plain() -> Example:
+    """The same of a pair of infrared cameras, with one extrinsics that does not say where it leads."""
+    content = {
+        "left": {"intrinsics": rs2_stream(FOCAL1, "brown_conrady", [*RADTAN1, 0.0])},
+        "right": {"intrinsics": rs2_stream(FOCAL2, "brown_conrady", [*RADTAN2, 0.0])},
+        "extrinsics": {"rotation": T_RL[:3, :3].tolist(), "translation": T_RL[:3, 3].tolist()},
+    }
+    return Example({"d435.json": json.dumps(content)}, PINHOLES)
+
+
 ARIA1 = [285.7, 420.1, 403.4, -0.02, 0.05, -0.04, 0.009, 1e-3, -2e-4, 1e-3, -2e-3, 3e-4, -1e-4, 2e-4, 1e-4]
 ARIA2 = [284.9, 428.1, 398.9, -0.01, 0.04, -0.03, 0.007, 2e-3, -1e-4, 2e-3, -1e-3, 1e-4, -2e-4, 3e-4, 2e-4]
 FISHEYE624 = ("k0", "k1", "k2", "k3", "k4", "k5", "p0", "p1", "s0", "s1", "s2", "s3")
@@ -169,6 +199,8 @@ def facebook360() -> Example:
 EXAMPLES: dict[str, Example] = {
     "realsense": realsense(),
     "realsense-d400": realsense_d400(),
+    "realsense-json": realsense_json(),
+    "realsense-json-plain": realsense_json_plain(),
     "aria": aria(),
     "facebook360": facebook360(),
 }

@@ -79,6 +79,30 @@ def test_realsense(tmp_path: Path, name: str, kind: str, pair: tuple[str, str], 
     assert_agrees(rig_of(name, tmp_path), np.eye(4), left, right, angle_deg)
 
 
+@pytest.mark.parametrize(
+    ("name", "kind", "angle_deg"),
+    [("realsense-json", "kannala-brandt", 60.0), ("realsense-json-plain", "brown", 35.0)],
+)
+def test_realsense_json(tmp_path: Path, name: str, kind: str, angle_deg: float) -> None:
+    """rs2_extrinsics: nine numbers are the rotation's columns; to = R from + t."""
+    file = content(name)
+    if kind == "brown":
+        one, two = (file[side]["intrinsics"] for side in ("left", "right"))
+        R, t = np.array(file["extrinsics"]["rotation"]), np.array(file["extrinsics"]["translation"])
+    else:
+        one, two = file["intrinsics"].values()
+        back = file["extrinsics"]["fisheye_2_to_fisheye_1"]
+        R = np.reshape(back["rotation"], (3, 3))  # its rows are the columns of R_1_2
+        t = -R @ back["translation"]
+
+    def projection(lens: Any, R: np.ndarray, t: np.ndarray) -> Any:
+        focal = [lens[key] for key in ("fx", "fy", "ppx", "ppy")]
+        return lambda shared: rs2_project(kind, focal, lens["coeffs"], shared @ R.T + t)
+
+    left, right = projection(one, np.eye(3), np.zeros(3)), projection(two, R, t)
+    assert_agrees(rig_of(name, tmp_path), np.eye(4), left, right, angle_deg)
+
+
 def fisheye624_pixel(params: list[float], X: np.ndarray) -> np.ndarray:
     """FisheyeRadTanThinPrism of projectaria_tools: radial, then tangential and thin-prism terms."""
     f, cx, cy, *rest = params

@@ -24,9 +24,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from rectbench.calibrations.assembling import assembled, camera_of, chosen, inverse, rigid, single
+from rectbench.calibrations.assembling import assembled, chosen, inverse, rigid, single
 from rectbench.calibrations.contract import Given, RigFormat
 from rectbench.calibrations.documents import Section, Source, errors_at, finite_number, shown
+from rectbench.calibrations.formats.devices.realsense_lens import pair_first, realsense_camera
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig, checked_rotation
@@ -40,31 +41,18 @@ BLOCK = re.compile(
     r"^ ?(?:Motion )?(?:Intrinsic of|Extrinsic from|\w+ Extrinsic|Extrinsic Parameters)", re.MULTILINE
 )
 MARK = b'Intrinsic of "'
-FIELDS = ("Width", "Height", "PPX", "PPY", "Fx", "Fy", "Distortion", "Coeffs")
-PAIRS = (("Fisheye 1", "Fisheye 2"), ("Infrared 1", "Infrared 2"))
-"""Streams that are a stereo pair, left first."""
-
-COEFFICIENTS = 5
-BROWN = ("k1", "k2", "p1", "p2", "k3")
-PLAIN = ("None", "Brown Conrady", "Modified Brown Conrady", "Inverse Brown Conrady")
-"""Distortions that without coefficients are none."""
-
-DISTORTIONS = (*PLAIN, "Kannala Brandt4", "Ftheta")
+FIELDS = ("Fx", "Fy", "PPX", "PPY", "Distortion", "Coeffs")
+SIZE = ("Width", "Height")
 
 
 def _read(sources: Sequence[Source], given: Given) -> Rig:
     source = single(sources)
     streams = _streams(source)
-    left_name, right_name = chosen(_pair_first(list(streams)), given, source.path)
+    left_name, right_name = chosen(pair_first(list(streams)), given, source.path)
     left, right = (_camera(streams[name], name, given) for name in (left_name, right_name))
     T = _pose(source, left_name, right_name)
     where = f'{source.path}: Extrinsic from "{left_name}" to "{right_name}"'
     return assembled(left, right, T, given, where, source.name, unit="m")
-
-
-def _pair_first(names: list[str]) -> list[str]:
-    pair = next((pair for pair in PAIRS if set(pair) <= set(names)), ())
-    return sorted(names, key=lambda name: pair.index(name) if name in pair else len(pair))
 
 
 def _streams(source: Source) -> dict[str, list[Section]]:
@@ -92,7 +80,7 @@ def _fields(block: str) -> dict[str, str | list[str]]:
     values: dict[str, str | list[str]] = {}
     for line in block.splitlines():
         key, colon, words = line.strip().partition(":")
-        if colon and key in FIELDS:
+        if colon and key in (*SIZE, *FIELDS):
             values[key] = words.split() if key == "Coeffs" else " ".join(words.split())
     return values
 
@@ -107,35 +95,11 @@ def _camera(blocks: list[Section], name: str, given: Given) -> Camera:
             f"{' of that size' if given.size else ''}; expected `size=` one of {sizes}"
         )
     section = fitting[0]
-    params = {
-        ours: section.number(theirs, "pixels")
-        for ours, theirs in (("fx", "Fx"), ("fy", "Fy"), ("cx", "PPX"), ("cy", "PPY"))
-    }
-    coefficients = section.numbers("Coeffs", "five distortion coefficients", COEFFICIENTS)
-    model, distortion = _distortion(section, coefficients)
-    return camera_of(section.where, model, _size(section), params | distortion)
+    return realsense_camera(section, FIELDS, _size(section))
 
 
 def _size(section: Section) -> tuple[int, int]:
-    return section.sides("Width", "Height", None)
-
-
-def _distortion(section: Section, coefficients: list[float]) -> tuple[str, dict[str, float]]:
-    kind = section.choice("Distortion", DISTORTIONS)
-    *first, last = coefficients
-    if kind == "Kannala Brandt4" and last == 0:
-        return "kannala-brandt", dict(zip(("k1", "k2", "k3", "k4"), first, strict=True))
-    if kind == "Ftheta" and not any(coefficients[1:]):
-        return "field-of-view", {"omega": coefficients[0]}
-    if kind in PLAIN and not any(coefficients):
-        return "pinhole", {}
-    is_radial = not any(coefficients[2:4])
-    if kind == "Brown Conrady" or (kind == "Modified Brown Conrady" and is_radial):
-        return "pinhole", dict(zip(BROWN, coefficients, strict=True))
-    raise InvalidInput(
-        f"{section.at('Distortion')} is {kind} with {shown(coefficients)}, a lens that rectbench has not; "
-        "expected Kannala Brandt4, Brown Conrady, or coefficients of 0"
-    )
+    return section.sides(*SIZE, None)
 
 
 def _pose(source: Source, left: str, right: str) -> FloatArray:
