@@ -131,6 +131,11 @@ REFUSED: list[tuple[str, Change, str]] = [
     ),
     ("metashape", put('sensor_id="0"', 'sensor_id="9"'), "sensor_id is no sensor of the file"),
     ("metashape", put('component_id="0"', 'component_id="1"', 1), "different components; expected one"),
+    (
+        "metashape",
+        put('label="not aligned"', 'master_id="0" label="slave"'),
+        "camera 'slave' is a slave of a multi-camera system and has no transform of its own",
+    ),
     ("metashape", put("<scale>2.5", "<scale>-1"), "scale is '-1'; expected a number above 0"),
     ("metashape", put("<document ", "<!DOCTYPE a [<!ENTITY b 'c'>]><document "), "declares a document type"),
     (
@@ -266,6 +271,16 @@ def test_metashape_s_own_scale_is_metres(tmp_path: Path, caplog: pytest.LogCaptu
     assert not caplog.records
     with pytest.raises(InvalidInput, match="is in m; expected unit='mm' as given beside the file"):
         loaded("metashape", lambda text: text, tmp_path, unit="mm")
+
+
+def test_a_multi_camera_system_s_cameras_with_a_transform_are_read_where_they_are_asked_for(
+    tmp_path: Path,
+) -> None:
+    enslaved = put('label="not aligned"', 'master_id="0" label="slave"')
+    rig = loaded("metashape", enslaved, tmp_path, cameras=("left", "right"))
+    assert rig.left == EXAMPLES["metashape"].rig.left
+    with pytest.raises(InvalidInput, match="camera 'slave' is a slave"):
+        loaded("metashape", enslaved, tmp_path, cameras=("left", "slave"))
 
 
 def test_an_applied_scale_is_taken_back(tmp_path: Path) -> None:

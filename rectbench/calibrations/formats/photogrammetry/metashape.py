@@ -47,6 +47,7 @@ class _Chunk:
     file: str
     sensors: dict[str, Element]
     cameras: dict[str, Element]
+    slaves: tuple[str, ...]
     scales: dict[str, str | None]
     scale: str | None
 
@@ -64,6 +65,7 @@ def _read(sources: Sequence[Source], given: Given) -> Rig:
         of_rig.append(camera)
         return _read_posed(chunk, camera, given)
 
+    _check_slaves(chunk, given)
     scales = {chunk.scale_of(camera) for camera in chunk.cameras.values()}
     unit = told_scale(source.path, given) if scales == {None} else "m"
     rig = rig_of_named(source, chunk.cameras, read, given, unit)
@@ -71,6 +73,16 @@ def _read(sources: Sequence[Source], given: Given) -> Rig:
     if len(components) > 1:
         raise InvalidInput(f"{source.path}: the cameras are of different components; expected one of both")
     return rig
+
+
+def _check_slaves(chunk: _Chunk, given: Given) -> None:
+    """Raise where a camera without a transform of its own is asked for, or may be meant."""
+    for name in chunk.slaves:
+        if given.cameras is None or name in given.cameras:
+            raise InvalidInput(
+                f"{chunk.file}: camera {shown(name)} is a slave of a multi-camera system and has no "
+                "transform of its own; expected `cameras=` two that have one"
+            )
 
 
 def _chunk(source: Source) -> _Chunk:
@@ -82,15 +94,22 @@ def _chunk(source: Source) -> _Chunk:
     if len(chunks) != 1:
         raise InvalidInput(f"{source.path}: holds {len(chunks)} chunks; expected the cameras of one")
     chunk = chunks[0]
-    aligned = (camera for camera in chunk.iter("camera") if camera.find("transform") is not None)
+    cameras = list(chunk.iter("camera"))
+    aligned = (camera for camera in cameras if camera.find("transform") is not None)
+    slaves = (camera for camera in cameras if camera.find("transform") is None and _has_master(camera))
     components = {part.get("id", ""): _scale(part) for part in chunk.findall("components/component")}
     return _Chunk(
         source.path,
         {sensor.get("id", ""): sensor for sensor in chunk.findall("sensors/sensor")},
         by_name((camera.get("label", camera.get("id", "")), camera) for camera in aligned),
+        tuple(camera.get("label", camera.get("id", "")) for camera in slaves),
         components,
         _scale(chunk),
     )
+
+
+def _has_master(camera: Element) -> bool:
+    return camera.get("master_id", camera.get("id")) != camera.get("id")
 
 
 def _scale(element: Element) -> str | None:
