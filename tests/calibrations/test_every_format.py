@@ -14,10 +14,10 @@ from tests.calibrations.examples import EXAMPLES, Example
 
 def written(example: Example, folder: Path) -> list[Path]:
     """The example's files in `folder`, and the paths of it that `load_rig` takes."""
-    for name, text in example.files.items():
+    for name, content in example.files.items():
         path = folder / name
         path.parent.mkdir(exist_ok=True)
-        path.write_text(text)
+        path.write_bytes(content if isinstance(content, bytes) else content.encode())
     return [folder / name for name in example.paths or example.files]
 
 

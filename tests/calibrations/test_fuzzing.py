@@ -43,7 +43,10 @@ class Calibration:
 
 
 def encoded(example: Example) -> Calibration:
-    files = {name: text.encode() for name, text in example.files.items()}
+    files = {
+        name: content if isinstance(content, bytes) else content.encode()
+        for name, content in example.files.items()
+    }
     return Calibration(files, example.paths, example.options)
 
 

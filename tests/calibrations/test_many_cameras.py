@@ -29,6 +29,24 @@ RIGHT_AND_LEFT = {
     "anipose-caliscope": ("1", "0"),
     "mccalib": ("camera_1", "camera_0"),
     "easymocap": ("2", "1"),
+    "multical": ("cam2", "cam1"),
+    "multical-master": ("cam2", "cam1"),
+    "realsense": ("Fisheye 2", "Fisheye 1"),
+    "realsense-d400": ("Infrared 2", "Infrared 1"),
+    "realsense-json": ("fisheye_2", "fisheye_1"),
+    "realsense-json-plain": ("right", "left"),
+    "aria": ("camera-slam-right", "camera-slam-left"),
+    "facebook360": ("cam1", "cam0"),
+    "metashape-fisheye": ("right", "left"),
+    "transforms": ("images/right.png", "left.png"),
+    "openmvg": ("right.jpg", "left.jpg"),
+    "alicevision": ("right.jpg", "/images/left.jpg"),
+    "alicevision-rig": ("b.png", "a.png"),
+    "drive": ("camera:right", "camera:left"),
+    "nurec": ("camera_right", "camera_left"),
+    "nuscenes": ("CAM_RIGHT", "CAM_LEFT"),
+    "argoverse": ("stereo_front_right", "stereo_front_left"),
+    "argoverse-two": ("ring_front_left", "ring_side_left"),
     "kitti": ("01", "00"),
     "kitti-rectified": ("P1", "P0"),
 }
@@ -39,7 +57,7 @@ def test_cameras_asked_for_the_other_way_round_are_swapped_with_their_pose(tmp_p
     example = EXAMPLES[name]
     rig = load_rig(written(example, tmp_path), **{**example.options, "cameras": RIGHT_AND_LEFT[name]})
     assert (rig.left.size, rig.right.size) == (example.rig.right.size, example.rig.left.size)
-    assert rig.left.params["fx"] == pytest.approx(example.rig.right.params["fx"])
+    assert rig.left.params["cx"] == pytest.approx(example.rig.right.params["cx"])
     np.testing.assert_allclose(rig.R_right_left, example.rig.R_right_left.T, atol=1e-12)
     np.testing.assert_allclose(rig.t_right_left, example.rig.centre_right_in_left, atol=1e-12)
 

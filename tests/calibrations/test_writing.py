@@ -54,6 +54,7 @@ def rig_of(camera: Camera, right: Camera | None = None) -> Rig:
     return Rig(camera, right or camera, R_RIGHT_LEFT, T_RIGHT_LEFT)
 
 
+F_THETA = {"cx": 640.2, "cy": 480.7, "angle_poly": [1 / 300, 1e-7]}
 EVERY = {"native"}
 SPHERES = {"kalibr", "basalt", "colmap", "opencv", "camodocal", "vins"}
 HOLDERS: dict[str, tuple[dict[str, float], set[str]]] = {
@@ -86,6 +87,7 @@ HOLDERS: dict[str, tuple[dict[str, float], set[str]]] = {
     "equisolid": ({}, set()),
     "orthographic": ({}, set()),
     "ocam": ({}, {"ocamcalib"}),
+    "f-theta": ({}, set()),
 }
 
 
@@ -97,7 +99,7 @@ def models_for(format: str) -> list[str]:
 
 def with_first(camera: Camera, count: int) -> Camera:
     """The camera with so many of its parameters beyond the focal length, the others at their simplest."""
-    if camera.model == "ocam":
+    if camera.model in ("ocam", "f-theta"):
         return camera
     own = [name for name in camera.params if name not in FOCAL][count:]
     return replace(camera, params={**camera.params, **{name: float(name == "beta") for name in own}})
@@ -156,7 +158,7 @@ def held_by(rig: Rig, folder: Path) -> set[str]:
 def test_which_formats_hold_which_lens(tmp_path: Path, name: str) -> None:
     params, holders = HOLDERS[name]
     model = name.split()[0]
-    own = FIXED | params
+    own = (F_THETA if model == "f-theta" else FIXED) | params
     camera = ocam_camera(POLY1, FOCAL1[2:], AFFINE1) if model == "ocam" else Camera(model, (1280, 960), own)
     assert held_by(rig_of(camera), tmp_path) == EVERY | holders
 
@@ -192,7 +194,8 @@ def test_a_plain_camera_of_each_model_equals_its_kin(model: str) -> None:
     simple = {"alpha": 0.5, "beta": 1.0} if model == "extended-unified" else {}
     if model == "ocam":
         return
-    camera = Camera(model, (1280, 960), FIXED | simple)
+    own = F_THETA if model == "f-theta" else FIXED | simple
+    camera = Camera(model, (1280, 960), own)
     for other in equal_cameras(camera):
         assert_same_lens(other, camera)
 

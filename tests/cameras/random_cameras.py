@@ -28,6 +28,7 @@ MODELS = (
     "division",
     "tilted-pinhole",
     "radial-tangential",
+    "f-theta",
 )
 
 
@@ -96,10 +97,23 @@ def _ocam(draw: Callable[[st.SearchStrategy[float]], float]) -> Camera:
     return Camera("ocam", SIZE, {"cx": 630.0, "cy": 470.0, **affine, "poly": tuple(sign * depth)})
 
 
+@st.composite
+def _f_theta(draw: Callable[[st.SearchStrategy[float]], float]) -> Camera:
+    focal = draw(within(150, 600))
+    poly = [
+        scale / focal**power
+        for power, scale in enumerate(
+            (1.0, *(draw(within(-bound, bound, 0)) for bound in (0.1, 0.1, 0.05, 0.02))), 1
+        )
+    ]
+    affine = {"c": draw(within(0.95, 1.05)), "d": draw(within(-0.01, 0.01)), "e": draw(within(-0.01, 0.01))}
+    return Camera("f-theta", SIZE, {"cx": 630.0, "cy": 470.0, **affine, "angle_poly": poly})
+
+
 def cameras(model: str) -> st.SearchStrategy[Camera]:
     """Cameras of one model over the whole range of its parameters."""
-    if model == "ocam":
-        return _ocam()
+    if model in ("ocam", "f-theta"):
+        return _ocam() if model == "ocam" else _f_theta()
     return st.fixed_dictionaries(PARAMETERS[model]).map(partial(Camera, model, SIZE))
 
 

@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 from rectbench.cameras import Camera
 from tests.cameras.random_cameras import SIZE, any_camera, cameras, domain_rays, edge_angle, ray
 
-FOCAL = {"fx": 300.0, "fy": 310.0, "cx": 630.0, "cy": 480.0}
+CENTRE = {"cx": 630.0, "cy": 480.0}
+FOCAL = {"fx": 300.0, "fy": 310.0, **CENTRE}
 PHI = np.linspace(0, 6, 13)
 
 
@@ -61,10 +62,13 @@ PHI = np.linspace(0, 6, 13)
         ("division", {"k": -0.3}, 180),
         # θ = atan2(r, 1 + k r²) stops rising at r = 1/sqrt(k)
         ("division", {"k": 0.2}, math.degrees(math.atan(0.5 / math.sqrt(0.2)))),
+        # θ = ρ - ρ³/3, of a camera of one pixel's focal length, stops rising at ρ = 1
+        ("f-theta", {"angle_poly": [1.0, 0.0, -1 / 3]}, math.degrees(2 / 3)),
+        ("f-theta", {"angle_poly": [1.0, 0.5]}, 180),
     ],
 )
 def test_the_edge_is_where_theory_puts_it(model, params, edge_deg):
-    camera = Camera(model, SIZE, {**FOCAL, **params})
+    camera = Camera(model, SIZE, {**(CENTRE if model == "f-theta" else FOCAL), **params})
     edge = np.degrees(edge_angle(camera, PHI))
     assert (edge <= edge_deg + 1e-9).all()
     assert (edge > edge_deg - 0.003).all()

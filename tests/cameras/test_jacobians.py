@@ -93,6 +93,9 @@ def test_on_the_axis_the_jacobian_is_the_focal_length_times_one_slope(model, dat
     if model == "ocam":
         c, d, e, poly = (camera.params[name] for name in ("c", "d", "e", "poly"))
         focal = abs(poly[0]) * np.array([[1, e], [d, c]])
+    elif model == "f-theta":
+        c, d, e, poly = (camera.params[name] for name in ("c", "d", "e", "angle_poly"))
+        focal = np.array([[1, e], [d, c]]) / poly[0]
     else:
         slope = jacobian[0, 0] / camera.params["fx"]
         assert 0.2 < slope < 20

@@ -30,6 +30,7 @@ CAMERAS = {
     "division": FOCAL | {"k": -0.2},
     "tilted-pinhole": FOCAL | BROWN | {"k3": 0.01, "s1": 1e-3, "tau_x": 0.03, "tau_y": -0.02},
     "radial-tangential": FOCAL | BROWN | {"k3": 0.01, "k4": -0.002, "skew": 2.0},
+    "f-theta": {"cx": 322, "cy": 237, "c": 1.01, "d": 1e-3, "e": -2e-3, "angle_poly": [4e-3, 1e-7, 2e-9]},
 }
 ABOUT_90_DEG = Polynomial([np.pi / 2, 1.0])
 INVERSE_OCAM = {
@@ -53,7 +54,8 @@ def rays_within(angle: float) -> np.ndarray:
 def differenced(camera: Camera, name: str, rays: np.ndarray) -> np.ndarray:
     """d(pixel)/d(parameter) [..., 2] from cameras with more and less of it, to fourth order."""
     whole, _, place = name.partition(".")
-    step = 1e-3 * (300.0 ** (1 - int(place)) if whole == "poly" else 1.0)
+    powers = {"poly": lambda place: 1 - place, "angle_poly": lambda place: -1 - place}
+    step = 1e-3 * (300.0 ** powers[whole](int(place)) if whole in powers else 1.0)
     values = {shift: with_changes(camera, {name: shift * step}).project(rays)[0] for shift in (-2, -1, 1, 2)}
     return (8 * (values[1] - values[-1]) - (values[2] - values[-2])) / (12 * step)
 

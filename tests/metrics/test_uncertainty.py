@@ -106,7 +106,11 @@ MODELS = {model: rig(model) for model in LENSES} | {
     "ocam": rb.Rig(
         *[rb.Camera("ocam", (480, 320), {"cx": 240, "cy": 160, "poly": [210, 0, -1e-3, 0, -3e-9]})] * 2,
         *(rig().R_right_left, rig().t_right_left),
-    )
+    ),
+    "f-theta": rb.Rig(
+        *[rb.Camera("f-theta", (480, 320), {"cx": 240, "cy": 160, "angle_poly": [5e-3, 1e-7, 2e-9]})] * 2,
+        *(rig().R_right_left, rig().t_right_left),
+    ),
 }
 
 
@@ -117,7 +121,8 @@ def test_each_parameter_moves_row_and_distance_as_a_moved_rig_does(model: str) -
     pixels = evaluation_pixels(believed.left, 40)
     lenses = [f"{side}.{name}" for side in ("left", "right") for name in parameter_names(believed.left)]
     for name in (*POSE, *lenses):
-        step = 1e-6 * (210.0 ** (1 - int(name[-1])) if ".poly" in name else 1.0)
+        power = 1 - int(name[-1]) if ".poly" in name else -1 - int(name[-1]) if ".angle_poly" in name else 0
+        step = 1e-6 * 210.0**power
         one = uncertainty(rect, believed, of(name, step), depth_m=depth_m, pixels=pixels)
         moves = [seen(rect, moved(believed, {name: sign * step}), pixels, depth_m) for sign in (1, -1)]
         for sigma, ahead, behind in zip(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import io
 import os
 import re
 from collections.abc import Iterator, Mapping
@@ -12,7 +13,9 @@ from pathlib import Path
 from typing import Any
 
 from rectbench.calibrations.documents.entries import as_entries, forget
-from rectbench.calibrations.documents.faults import shown
+from rectbench.calibrations.documents.archives import MARK, parse_archive
+from rectbench.calibrations.documents.faults import one_line, shown
+from rectbench.calibrations.documents.parsing import Malformed, parse
 from rectbench.calibrations.documents.sections import Section, parse_document
 from rectbench.errors import InvalidInput
 
@@ -21,6 +24,7 @@ MAX_BYTES = 1 << 22
 
 SUFFIXES = {
     *(".yaml", ".yml", ".xml", ".json", ".toml", ".txt", ".bin", ".cameramodel", ".cfg", ".conf", ".ini", ""),
+    *(".npz",),
 }
 """What calibrations are called; in a folder, other files are not looked at."""
 
@@ -92,8 +96,9 @@ class Source:
 
     @cached_property
     def document(self) -> Section:
-        """The YAML, JSON or XML that the file holds; raises InvalidInput where it holds none."""
-        self.sections["document"] = parse_document(self.text, self.path)
+        """The YAML, JSON, XML or .npz that the file holds; raises InvalidInput where it holds none."""
+        is_archive = self.content.startswith(MARK)
+        self.sections["document"] = self._archive() if is_archive else parse_document(self.text, self.path)
         return self.sections["document"]
 
     def section(self, values: Mapping[str, Any], key: str = "") -> Section:
@@ -106,6 +111,28 @@ class Source:
         self.companions.clear()
         for section in self.sections.values():
             forget(section.values)
+
+    def _archive(self) -> Section:
+        try:
+            if len(self.content) <= MAX_BYTES:
+                return Section(self.path, "", as_entries(parse_archive(io.BytesIO(self.content))))
+            with Path(self.path).open("rb") as stream:  # whose maps and images are not read
+                return Section(self.path, "", as_entries(parse_archive(stream)))
+        except (Malformed, OSError) as error:
+            raise InvalidInput(f"{self.path}: {one_line(error)}; expected NumPy's K1, D1, ...") from None
+
+    @cached_property
+    def records(self) -> tuple[Section, ...]:
+        """The mappings of a file that is a list of them, as tables are written in JSON; none of another."""
+        if not self.head.lstrip().startswith("["):
+            return ()
+        try:
+            content = parse(self.text)
+        except (Malformed, InvalidInput):
+            return ()
+        if not isinstance(content, list) or not all(isinstance(record, dict) for record in content):
+            return ()
+        return tuple(self.section(record, f"[{place}].") for place, record in enumerate(content))
 
     def table(self, mark: str) -> Section:
         """The lines `key mark words` by key: a word, or a list of several, without brackets and commas."""

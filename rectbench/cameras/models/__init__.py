@@ -10,10 +10,10 @@ from rectbench.cameras.models import (  # noqa: F401
     field_of_view,
     fisheye624,
     kannala_brandt,
-    ocam,
     orthographic,
     pinhole,
     stereographic,
     thin_prism_fisheye,
     unified,
 )
+from rectbench.cameras.models.in_pixels import f_theta, ocam  # noqa: F401

@@ -4,7 +4,16 @@ Two lenses differ in every number, the pose turns about all three axes, and the 
 refer to stands askew, so that no transposed, inverted or swapped reading can pass.
 """
 
-from tests.calibrations.examples import datasets, fisheye_dialects, odometry, toolboxes
+from tests.calibrations.examples import (
+    datasets,
+    devices,
+    exports,
+    fisheye_dialects,
+    odometry,
+    photogrammetry,
+    toolboxes,
+    vehicles,
+)
 from tests.calibrations.examples.datasets import ros_text
 from tests.calibrations.examples.made_up import (
     FISHEYES,
@@ -23,6 +32,10 @@ EXAMPLES: dict[str, Example] = {
     **toolboxes.EXAMPLES,
     **datasets.EXAMPLES,
     **fisheye_dialects.EXAMPLES,
+    **exports.EXAMPLES,
+    **devices.EXAMPLES,
+    **photogrammetry.EXAMPLES,
+    **vehicles.EXAMPLES,
 }
 """By the name of the format, with what tells its variants apart."""
 

@@ -33,7 +33,7 @@ XI1, XI2 = 0.91, 0.89
 class Example:
     """Files by name, what of them is passed to `load_rig`, and the rig that comes out."""
 
-    files: Mapping[str, str]
+    files: Mapping[str, str | bytes]
     rig: Rig
     paths: tuple[str, ...] = ()
     options: Mapping[str, Any] = field(default_factory=dict)

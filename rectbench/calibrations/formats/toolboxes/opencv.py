@@ -1,4 +1,4 @@
-"""OpenCV's stereo calibrations, YAML, XML or JSON, as `cv2.FileStorage` and OpenCV's samples write them.
+"""OpenCV's stereo calibrations, YAML, XML, JSON or .npz, as `cv2.FileStorage`, samples and Python write them.
 
 | what | keys, for camera 1 (left) and 2 (right) |
 |---|---|
@@ -280,7 +280,7 @@ def distortion_of(camera: Camera, lens: str) -> list[float]:
 
 FORMAT = RigFormat(
     "opencv",
-    "OpenCV stereo, fisheye and omnidir calibration (YAML, XML, JSON)",
+    "OpenCV stereo, fisheye and omnidir calibration (YAML, XML, JSON, .npz)",
     _recognises,
     _read,
     shares_keys=True,

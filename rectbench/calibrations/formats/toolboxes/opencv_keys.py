@@ -12,15 +12,19 @@ from rectbench.types import FloatArray
 
 MATRIX = (
     *("M", "K", "cameraMatrix", "camera_matrix", "CameraMatrix", "Camera_Matrix"),
-    *("mtx", "intrinsic_matrix", "camera_mat"),
+    *("mtx", "intrinsic_matrix", "camera_mat", "camMatrix", "cam_mtx", "cameraMat"),
 )
 DISTORTION = (
     *("D", "distCoeffs", "dist_coeffs", "distortion_coefficients", "DistCoeffs", "Distortion_Coefficients"),
-    *("dist", "distortion", "distortion_coeffs"),
+    *("dist", "distortion", "distortion_coeffs", "dist_coeff", "dist_coefs", "dist_coef", "distCoeff"),
+    *("distCoefs", "distCoef", "distortionCoefficients", "distortion_coefficient", "distortionCoeffs"),
 )
 XI = ("xi",)
-ROTATION = ("R", "rvec", "om", "rotation_matrix", "rotation_mat", "rotation")
-TRANSLATION = ("T", "tvec", "t", "translation_vector", "translation_vec", "translation")
+ROTATION = ("R", "rvec", "om", "rotation_matrix", "rotation_mat", "rotation", "rotationMatrix", "Rot", "rot")
+TRANSLATION = (
+    *("T", "tvec", "t", "translation_vector", "translation_vec", "translation", "translationVector"),
+    *("Trns", "trans"),
+)
 MARKS = {*ROTATION[:3], *TRANSLATION[:2]}
 """Keys of a pose that only OpenCV's files have; the long words are in others' too."""
 

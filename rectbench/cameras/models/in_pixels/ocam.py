@@ -9,7 +9,8 @@ from typing import Any, ClassVar
 
 from numpy.polynomial import Polynomial
 
-from rectbench.cameras.lens import RadialLens, register
+from rectbench.cameras.lens import register
+from rectbench.cameras.models.in_pixels.stretched import AFFINE_PARAMETERS, StretchedLens
 from rectbench.errors import InvalidInput
 from rectbench.formulas.domain import LEAST_SLOPE, first_root
 from rectbench.formulas.inversion import inverse
@@ -24,7 +25,7 @@ LARGEST_HOLE = 0.01
 
 
 @register
-class OCam(RadialLens):
+class OCam(StretchedLens):
     """The ray of a point (x', y') at the radius ρ on the sensor is (x', y', z) with |z| = a0 + a1 ρ + ...
 
     The sensor's own stretch and skew follow: u = x' + e y' + cx, v = d x' + c y' + cy, pixels.
@@ -38,15 +39,11 @@ class OCam(RadialLens):
     """
 
     name = "ocam"
-    parameters = ("cx", "cy", "c", "d", "e", "poly", "inverse_poly")
-    ranges: ClassVar = {}
-    defaults: ClassVar = {"c": 1.0}
+    parameters: ClassVar = (*AFFINE_PARAMETERS, "poly", "inverse_poly")
     vectors = frozenset({"poly", "inverse_poly"})
 
     def derive(self, p: SimpleNamespace) -> dict[str, Any]:
-        determinant = p.c - p.d * p.e
-        if not determinant > 0:
-            raise InvalidInput(f"ocam has c - d e = {determinant:g}; expected a number in (0, inf)")
+        determinant = self.determinant(p)
         if p.poly:
             return {"determinant": determinant, **_from_polynomial(p.poly)}
         if p.inverse_poly:
@@ -65,20 +62,9 @@ class OCam(RadialLens):
         start = radius * (c.max_theta / c.max_radius)
         return inverse(self.radius, c, radius, c.max_theta, c.max_radius, start, xp)
 
-    def to_pixel(self, c: Any, mx: Any, my: Any) -> tuple[Any, Any]:
-        return mx + c.e * my + c.cx, c.d * mx + c.c * my + c.cy
-
-    def from_pixel(self, c: Any, u: Any, v: Any) -> tuple[Any, Any]:
-        u, v = u - c.cx, v - c.cy
-        return (c.c * u - c.e * v) / c.determinant, (v - c.d * u) / c.determinant
-
     def scaled(self, params: Mapping[str, Any], sx: float, sy: float) -> dict[str, Any]:
         return {
-            **params,
-            "cx": (params["cx"] + 0.5) * sx - 0.5,
-            "cy": (params["cy"] + 0.5) * sy - 0.5,
-            "c": params["c"] * sy / sx,
-            "d": params["d"] * sy / sx,
+            **super().scaled(params, sx, sy),
             "poly": tuple(a * sx ** (1 - i) for i, a in enumerate(params["poly"])),
             "inverse_poly": tuple(b * sx for b in params["inverse_poly"]),
         }

@@ -1,0 +1,1 @@
+"""Cars and their simulators: NVIDIA's f-theta rigs, WoodScape, nuScenes, Argoverse."""

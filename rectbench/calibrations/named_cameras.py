@@ -1,0 +1,113 @@
+"""What readers of files with several cameras share: names, quaternions, units that a file leaves open."""
+
+from __future__ import annotations
+
+import logging
+import re
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from dataclasses import replace
+from typing import TypeVar
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from rectbench.calibrations.assembling import chosen, rig_of_posed
+from rectbench.calibrations.contract import Given, PosedCamera
+from rectbench.calibrations.documents import Section, Source, one_line
+from rectbench.errors import InvalidInput
+from rectbench.rigs.rig import Rig
+from rectbench.types import FloatArray
+
+log = logging.getLogger("rectbench.calibrations")
+
+Entry = TypeVar("Entry")
+
+QUATERNION_TOLERANCE = 1e-3
+"""How far from 1 a quaternion's length may be; what is farther is another thing than a rotation."""
+
+Y_UP_Z_BACK = np.diag([1.0, -1.0, -1.0, 1.0])
+"""Turns a camera of x right, y down, z forward into one of x right, y up, z back, and the other way."""
+
+
+OF_A_LENS_OR_POSE = re.compile(
+    r"dist|coeff|model|lens|focal|fov|princip|center|centre|optical|intrin|extrin|rotat|transl|pose|quat|turn"
+    r"|correct|2rig|rigid|poly|theta|linear|ratio|aspect|skew|offset|angle|^[kps]\d|^[cf][xyl]|^b\d|^[rtkdp]$",
+    re.IGNORECASE,
+)
+"""What keys of a lens or of a pose are called, in files whose other keys are anybody's."""
+
+
+def rig_of_named(
+    source: Source,
+    cameras: Mapping[str, Entry],
+    read: Callable[[Entry], PosedCamera],
+    given: Given,
+    unit: str | None = None,
+) -> Rig:
+    """The rig of two of a file's cameras: those asked for, by their names or the last parts of these."""
+    names = chosen(list(cameras), _full_names(given, list(cameras)), source.path)
+    return rig_of_posed([read(cameras[name]) for name in names], given, source.name, unit)
+
+
+def by_name(entries: Iterable[tuple[str, Entry]]) -> dict[str, Entry]:
+    """Entries by their names; one whose name others have too is called `name#2` and so on."""
+    found: dict[str, Entry] = {}
+    for name, entry in entries:
+        place, unique = 1, name
+        while unique in found:
+            place += 1
+            unique = f"{name}#{place}"
+        found[unique] = entry
+    return found
+
+
+def _full_names(given: Given, names: Sequence[str]) -> Given:
+    """What is asked for, with the last part of one path alone put in full."""
+    if given.cameras is None:
+        return given
+    left, right = (_full_name(name, names) for name in given.cameras)
+    return replace(given, cameras=(left, right))
+
+
+def _full_name(name: str, names: Sequence[str]) -> str:
+    ending = [full for full in names if full.replace("\\", "/").endswith(f"/{name}")]
+    return ending[0] if name not in names and len(ending) == 1 else name
+
+
+def quaternion_rotation(where: str, wxyz: Sequence[float]) -> FloatArray:
+    """The rotation [3, 3] of a unit quaternion (w, x, y, z); InvalidInput, at `where`, for another."""
+    with np.errstate(over="ignore"):
+        length = float(np.linalg.norm(wxyz))
+    if not abs(length - 1) < QUATERNION_TOLERANCE:
+        raise InvalidInput(f"{where} is a quaternion of length {length:g}; expected 1")
+    w, x, y, z = wxyz
+    return Rotation.from_quat([x, y, z, w]).as_matrix()
+
+
+def refuse_unread(section: Section, known: Collection[str]) -> None:
+    """Raise for a key that seems to be of a lens or a pose and is none of those known."""
+    for key in section.values:
+        if key not in known and OF_A_LENS_OR_POSE.search(key):
+            raise InvalidInput(
+                f"{section.at('')}{one_line(key)!r} is not known here; expected it to be left out"
+            )
+
+
+def told_scale(where: str, given: Given) -> str:
+    """The unit of a reconstruction, whose scale nothing need have fixed: that given, or else metres, told."""
+    if given.unit is None:
+        log.warning("%s: its scale is arbitrary unless something fixed it; taken to be in metres", where)
+    return given.unit or "m"
+
+
+def told_unit(where: str, baseline: float, longest: float, unit: str, given: Given) -> str:
+    """The unit of a file that leaves it open: that given, or metres; for a longer baseline `unit`, told."""
+    if given.unit is not None or not baseline > longest:
+        return given.unit or "m"
+    log.warning(
+        "%s: the baseline is %.4g, too long for metres; taken to be in %s (unit= says otherwise)",
+        where,
+        baseline,
+        unit,
+    )
+    return unit
