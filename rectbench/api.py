@@ -246,7 +246,7 @@ def export_dataset(
     >>> made = rb.export_dataset("street", "t265", "dataset", seeds=[0, 1])  # doctest: +SKIP
     >>> rb.export_dataset("street", "t265", "dataset", seeds=[])
     Traceback (most recent call last):
-    rectbench.errors.InvalidInput: seeds are empty; expected whole numbers from 0 on, a pair each
+    rectbench.errors.InvalidInput: seeds is empty; expected whole numbers from 0 on, a pair each
     """
     given = {name: value for name, value in locals().items() if name != "progress"}
     from rectbench.applications.export.dataset import export_dataset

@@ -10,7 +10,7 @@ from rectbench import metrics
 from rectbench.applications.one_rig import estimate_rig_pose, rectify_rig, rig_of
 from rectbench.applications.requests.photographs import PoseSettings, UncertaintyRequest
 from rectbench.calibrations import load_covariance
-from rectbench.errors import InvalidInput
+from rectbench.errors import InvalidInput, argument
 from rectbench.images.reading import read_images
 from rectbench.metrics import Uncertainty
 from rectbench.reporting.pictures.uncertainty_maps import map_pixels, write_uncertainty
@@ -71,7 +71,7 @@ def _believed(rig: Rig, images: Images | None, request: UncertaintyRequest) -> t
         parts.append(RigCovariance.from_sigmas(rig, **sigmas, source=f"stated {words}"))
     if not parts:
         raise InvalidInput(
-            "nothing says how sure the calibration is; expected --covariance FILE, a size such as "
-            "--rotation-deg 0.05, or two images whose pose is estimated"
+            f"nothing says how sure the calibration is; expected {argument('covariance')}, a size such as "
+            f"{argument('rotation_deg', 0.05)}, or two images whose pose is estimated"
         )
     return rig, sum(parts[1:], start=parts[0])

@@ -84,5 +84,5 @@ def test_methods_that_do_not_apply_are_listed_with_their_reason(tmp_path: Path) 
 
 
 def test_frames_in_which_methods_show_different_things_are_refused() -> None:
-    with pytest.raises(rb.InvalidInput, match="expected a coverage or fov_deg"):
+    with pytest.raises(rb.InvalidInput, match="expected coverage or fov_deg"):
         best_method(RIG, framing=Framing(crop="valid"))

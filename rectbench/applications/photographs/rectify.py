@@ -23,7 +23,7 @@ from rectbench.applications.photographs.rectified import (
 from rectbench.applications.rectification_files import SIDES, Files
 from rectbench.applications.requests.photographs import BEST, FramingRequest, RectifyRequest
 from rectbench.calibrations import holds_many
-from rectbench.errors import InvalidInput, UnknownName
+from rectbench.errors import InvalidInput, UnknownName, argument
 from rectbench.images.reading import read_images
 from rectbench.images.stereo_pair import check_size
 from rectbench.matching.pose.uncalibrated import uncalibrated
@@ -118,7 +118,7 @@ def _refuse_guessed_cameras(rig: Any, pair: FilePair) -> None:
     if numbers is not None and any(map(holds_many, files)):
         raise InvalidInput(
             f"{pair.left} is of camera {numbers[0]}, and {files[0]} may hold many; expected the names of two "
-            "(cameras, --cameras)"
+            f"({argument('cameras')})"
         )
 
 

@@ -24,7 +24,7 @@ from rectbench.applications.requests.request import (
     positional,
     word,
 )
-from rectbench.errors import InvalidInput
+from rectbench.errors import InvalidInput, argument
 from rectbench.plugins.defaults import DEFAULT_METHOD, UNCALIBRATED_METHOD
 
 BEST = "best"
@@ -89,7 +89,8 @@ class RectifyRequest(FramingRequest, OptionsRequest, RigRequest):
     @model_validator(mode="after")
     def _checked(self) -> Self:
         if self.method == BEST and self.options:
-            raise InvalidInput("options are given for method best; expected them for a method by its name")
+            given = f"{argument('options')} is given beside {argument('method', BEST)}"
+            raise InvalidInput(f"{given}; expected it beside a method by its name")
         return self
 
     @property
