@@ -13,7 +13,7 @@ import numpy as np
 
 from rectbench.applications import rectification_files as encode
 from rectbench.applications.choose_method import Choice, best_method, uncalibrated_methods
-from rectbench.applications.one_rig import rig_of
+from rectbench.applications.one_rig import circle_of, rig_of
 from rectbench.applications.photographs.rectified import (
     OwnMatches,
     PairResult,
@@ -60,7 +60,10 @@ def rectify_photographs(request: RectifyRequest, progress: bool | None = None) -
     found = image_pairs(request.left, request.right)
     pairs = found.pairs
     rig, matches = _calibration(request, pairs)
-    _refuse_overwriting(pairs, request.out)
+    circle = circle_of(request, rig, pairs) if request.rig is not None else None
+    if circle is not None:
+        rig = rig.within(circle.angle_deg)
+    _refuse_overwriting(pairs, circle.masks if circle else (), request.out)
     readable, first = _first_readable(pairs, rig)
     known = OwnMatches.of(first, rig, request.seed) if request.measured_pairs else OwnMatches()
     framing = Framing(**{name: getattr(request, name) for name in FramingRequest.model_fields})
@@ -73,6 +76,7 @@ def rectify_photographs(request: RectifyRequest, progress: bool | None = None) -
         own_costs=None if own is None else frame_costs(own, rig),
         choice=choice,
         unpaired=found.left_out,
+        circle=circle,
     )
     contents = _rig_files(made, request)
     shown = [resample(image) for resample, image in zip(resamplers, first, strict=True)]
@@ -152,6 +156,8 @@ def _rig_files(made: RectifiedImages, request: RectifyRequest) -> Files:
     facts: dict[str, Any] = {"method": made.method, "options": dict(request.options)}
     if made.choice:
         facts["chosen"] = made.choice.why
+    if made.circle:
+        facts["image_circle"] = made.circle.told
     if request.rig is None:
         facts["calibrated"] = "no: the rig below is assumed, and its baseline is 1 of an unknown unit"
     contents = encode.description_files(made.rectification, **facts) | encode.mask_files(made.rectification)
@@ -200,13 +206,14 @@ def _image_files(images: Images, resamplers: Sequence[Resampler], stem: str) -> 
         return {name + suffix: data for name, (suffix, data) in zip(names, encoded, strict=True)}
 
 
-def _refuse_overwriting(pairs: Sequence[FilePair], out: Path) -> None:
-    """Raise InvalidInput where an image would be written over a photograph."""
+def _refuse_overwriting(pairs: Sequence[FilePair], masks: Sequence[Path], out: Path) -> None:
+    """Raise InvalidInput where an image would be written over a photograph, or over a mask of its lenses."""
     names = [f"{side}/{pair.name}" for pair in pairs for side in SIDES] if len(pairs) > 1 else SIDES
     written = {(out / (name + suffix)).resolve() for name in names for suffix in encode.SUFFIXES}
-    for photograph in (path for pair in pairs for path in pair.files):
-        if photograph.resolve() in written:
-            raise InvalidInput(f"{photograph} would be overwritten; expected another folder than {out}")
+    written |= {(out / f"{side}_mask.png").resolve() for side in SIDES}
+    for given in (*(path for pair in pairs for path in pair.files), *masks):
+        if given.resolve() in written:
+            raise InvalidInput(f"{given} would be overwritten; expected another folder than {out}")
 
 
 OWN_FILES = ("opencv.yml", "maps.npz", "maps.yml.gz", "maps_fixed.yml.gz", "pairs.csv", "metrics.json")
