@@ -134,6 +134,43 @@ def rectify_images(
     return rectify_photographs(RectifyRequest(**given, **vars(framing or Framing())), progress)
 
 
+def write_tables(
+    rig: Rig | RigSource | Sequence[RigSource],
+    out: str | Path = "rectified",
+    *,
+    method: str | Path | None = None,
+    options: Mapping[str, Any] | None = None,
+    framing: Framing | None = None,
+    tables: Sequence[str] = ("npz", "opencv", "fixed"),
+    seed: int = 0,
+    image_size: tuple[int, int] | None = None,
+    max_angle_deg: float | None = None,
+    unit: str | None = None,
+    cameras: Sequence[str] | None = None,
+) -> RectifiedImages:
+    """Rectify a rig into a folder, without images: lookup tables, masks, descriptions, metrics.
+
+    Parameters
+    ----------
+    rig, out, method, options, framing, tables, seed, max_angle_deg, unit, cameras : as in `rectify_images`.
+        A method that works from matches gets exact ones, made from the rig's pose.
+    image_size : (width, height) of the source images, pixels, for a calibration that does not tell.
+
+    Written are the same files but for the images; `preview.png` shows a grid of source pixels. Returns what
+    was made. Raises what `rectify_images` raises; Unsupported for a method that works from images.
+
+    >>> import tempfile, rectbench as rb
+    >>> folder = Path(tempfile.mkdtemp())
+    >>> made = rb.write_tables(rb.load_rig("sony-as200v").scaled(0.1), folder, tables=["npz"])
+    >>> sorted(file.name for file in made.files)
+    ['left_mask.png', 'maps.npz', 'metrics.json', 'preview.png', 'rectified.yaml', 'right_mask.png']
+    """
+    given = {name: value for name, value in locals().items() if name != "framing"}
+    from rectbench.applications.photographs.rectify import rectify_photographs
+
+    return rectify_photographs(RectifyRequest(**given, **vars(framing or Framing())))
+
+
 def estimate_pose(
     images: StereoPair | Sequence[ArrayLike],
     rig: Rig,

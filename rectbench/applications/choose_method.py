@@ -159,8 +159,6 @@ def _tried(
     framing: Framing,
     trusted: Matches | None,
 ) -> Candidate:
-    if "images" in plugin.value.needs and problem.images is None:
-        return Candidate(plugin.name, status="unsupported", reason="works from images, and there are none")
     try:
         own = fit(plugin, problem, checked_options(plugin, {}))
         delivered = Delivered.of(own, view)

@@ -20,9 +20,9 @@ from rectbench.applications.requests.photographs import (
     ReconstructRequest,
     UncertaintyRequest,
 )
-from rectbench.applications.requests.request import RigRequest, SeededMethodRequest, SizedRigRequest
+from rectbench.applications.requests.request import RigRequest, SeededMethodRequest
 from rectbench.calibrations import load_rig, load_rig_of_images
-from rectbench.errors import InvalidInput
+from rectbench.errors import InvalidInput, renamed
 from rectbench.images.reading import read_images
 from rectbench.images.stereo_pair import StereoPair, check_size
 from rectbench.matching.pose.estimate import PoseEstimate, pose_from_images
@@ -48,8 +48,8 @@ def rig_of(request: RigRequest, images: Images | None = None) -> Rig:
         width, height = images.left.shape[1::-1]
         rig = load_rig_of_images(request.rig, (width, height), request.unit, request.cameras)
     else:
-        size = request.size if isinstance(request, SizedRigRequest) else None
-        rig = load_rig(request.rig, size, request.unit, request.cameras)
+        with renamed(size=request.size_field or "size"):
+            rig = load_rig(request.rig, request.source_size, request.unit, request.cameras)
     return rig if request.max_angle_deg is None else rig.within(request.max_angle_deg)
 
 

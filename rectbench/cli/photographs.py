@@ -17,6 +17,7 @@ def rectify(request: RectifyRequest) -> int:
     """Rectify image pairs: images, masks, lookup tables, the rig's description, and what the frame costs.
 
     LEFT and RIGHT are two images, two folders, or two patterns such as 'left/*.png' in quotation marks.
+    Without them all but the images is written for --rig: tables, masks, description, a preview of a grid.
     Exit code 3 where some of several pairs had to be left out.
     """
     from rectbench.applications.photographs.rectify import rectify_photographs

@@ -81,7 +81,7 @@ class OwnMatches:
 
 @dataclass(frozen=True, eq=False)
 class RectifiedImages:
-    """What was made of the photographs of a rig."""
+    """What was made of the photographs of a rig, or of the rig alone."""
 
     method: str
     rectification: Rectification
@@ -91,7 +91,7 @@ class RectifiedImages:
     """Of the frame that the method makes by itself; None where that is the frame."""
     choice: Choice | None
     """How the method was chosen, where it was."""
-    unpaired: tuple[LeftOut, ...]
+    unpaired: tuple[LeftOut, ...] = ()
     """Images without a partner."""
     circle: ImageCircle | None = None
     """What the lenses were held to, where a mask or the images themselves show it."""

@@ -20,6 +20,7 @@ from rectbench.applications.photographs.rectified import (
     RectifiedImages,
     summary_files,
 )
+from rectbench.applications.pixel_grid import grid_preview
 from rectbench.applications.rectification_files import SIDES, Files
 from rectbench.applications.requests.photographs import BEST, FramingRequest, RectifyRequest
 from rectbench.calibrations import holds_many
@@ -42,7 +43,7 @@ from rectbench.writing import check_writable, write_atomically
 
 
 def rectify_photographs(request: RectifyRequest, progress: bool | None = None) -> RectifiedImages:
-    """Rectify photographs of one rig into a folder.
+    """Rectify photographs of one rig into a folder; without any, write all but the images.
 
     Written are the rectification (`rectified.yaml`, `opencv.yml` where OpenCV has a form for it), masks,
     lookup tables, `preview.png`, `metrics.json`; and `left.png`, `right.png` of a single pair, or
@@ -57,6 +58,8 @@ def rectify_photographs(request: RectifyRequest, progress: bool | None = None) -
         if kind not in encode.TABLES:
             raise UnknownName("kind of tables", kind, encode.TABLES)
     check_writable(request.out)
+    if request.left is None or request.right is None:
+        return _tables_alone(request)
     found = image_pairs(request.left, request.right)
     pairs = found.pairs
     rig, matches = _calibration(request, pairs)
@@ -66,11 +69,10 @@ def rectify_photographs(request: RectifyRequest, progress: bool | None = None) -
     _refuse_overwriting(pairs, circle.masks if circle else (), request.out)
     readable, first = _first_readable(pairs, rig)
     known = OwnMatches.of(first, rig, request.seed) if request.measured_pairs else OwnMatches()
-    framing = Framing(**{name: getattr(request, name) for name in FramingRequest.model_fields})
-    choice, own, rect = _rectification(rig, request, framing, first, matches, known)
+    choice, own, rect = _rectification(rig, request, first, matches, known.best)
     resamplers = [Resampler.of(rect, side, "area" if request.antialias else "point") for side in SIDES]
     made = RectifiedImages(
-        method=choice.best.method if choice else registry(METHODS).get(request.method_name).name,
+        method=_method(request, choice),
         rectification=rect,
         costs=frame_costs(rect, rig) | _averaging(resamplers),
         own_costs=None if own is None else frame_costs(own, rig),
@@ -104,6 +106,26 @@ def rectify_photographs(request: RectifyRequest, progress: bool | None = None) -
     return replace(made, files=(*files, *_written(summary_files(made), request.out)))
 
 
+def _tables_alone(request: RectifyRequest) -> RectifiedImages:
+    """All that needs no photographs, with a pixel grid as the preview."""
+    rig = rig_of(request)
+    choice, own, rect = _rectification(rig, request)
+    made = RectifiedImages(
+        method=_method(request, choice),
+        rectification=rect,
+        costs=frame_costs(rect, rig),
+        own_costs=None if own is None else frame_costs(own, rig),
+        choice=choice,
+    )
+    contents = _rig_files(made, request) | {"preview.png": grid_preview(rect)} | summary_files(made)
+    _remove_earlier(request.out, contents)
+    return replace(made, files=tuple(_written(contents, request.out)))
+
+
+def _method(request: RectifyRequest, choice: Choice | None) -> str:
+    return choice.best.method if choice else registry(METHODS).get(request.method_name).name
+
+
 def _calibration(request: RectifyRequest, pairs: Sequence[FilePair]) -> tuple[Rig, Matches | None]:
     """The rig of a request; without one, one that is assumed, and the matches that methods work from."""
     _, images = _first_readable(pairs)
@@ -129,17 +151,17 @@ def _refuse_guessed_cameras(rig: Any, pair: FilePair) -> None:
 def _rectification(
     rig: Rig,
     request: RectifyRequest,
-    framing: Framing,
-    images: Images,
-    matches: Matches | None,
-    known: OwnMatches,
+    images: Images | None = None,
+    matches: Matches | None = None,
+    trusted: Matches | None = None,
 ) -> tuple[Choice | None, Rectification | None, Rectification]:
     """How it was chosen, if it was; the method's own frame, if it is another; and the one that is wanted."""
+    framing = Framing(**{name: getattr(request, name) for name in FramingRequest.model_fields})
     without_calibration = request.rig is None
     given: dict[str, Any] = {"images": images, "matches": matches, "seed": request.seed}
     if request.method == BEST:
         methods = uncalibrated_methods() if without_calibration else None
-        choice = best_method(rig, framing=framing, trusted=known.best, methods=methods, **given)
+        choice = best_method(rig, framing=framing, trusted=trusted, methods=methods, **given)
         return choice, None, choice.rectification
     plugin = registry(METHODS).get(request.method_name)
     if without_calibration and "pose" in plugin.value.needs:

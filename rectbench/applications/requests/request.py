@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from numbers import Integral, Real
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, ValidationInfo
 
@@ -115,11 +115,19 @@ class RigRequest(Request):
     cameras: Any = word(
         "Two cameras of a calibration that holds more, by its names.", metavar="LEFT,RIGHT", has_commas=True
     )
+    size_field: ClassVar[str | None] = None
+    """The field for the images' size, where there is one for a calibration that leaves it out."""
+
+    @property
+    def source_size(self) -> tuple[int, int] | None:
+        """The size that is stated for the images of the rig, pixels."""
+        return None if self.size_field is None else getattr(self, self.size_field)
 
 
 class SizedRigRequest(RigRequest):
     """A rig without images that would tell their size."""
 
+    size_field = "size"
     size: tuple[int, int] | None = word(
         "The images' size, where the calibration does not tell.", metavar="WxH", parse=size_in
     )

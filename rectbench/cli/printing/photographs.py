@@ -73,7 +73,7 @@ def show_rectified(made: RectifiedImages) -> None:
             screen.print(Text(f"{result.pair.name}: {result.note}", style="dim"), soft_wrap=True)
     if made.warning:
         screen.print(Text(f"warning: {made.warning}", style="yellow"), soft_wrap=True)
-    for file in made.files if len(made.pairs) == 1 else made.files[-1:]:
+    for file in made.files[-1:] if len(made.pairs) > 1 else made.files:
         print(file)
 
 
