@@ -8,11 +8,11 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from rectbench.applications.rectification_files import GAP_PX, SIDES, side_by_side
+from rectbench.applications.rectification_files import GAP_PX, PREVIEW_WIDTH_PX, SIDES, side_by_side
 from rectbench.cameras import Camera
 from rectbench.images.reading import Rgb, encoded
 from rectbench.rigs import Rig
-from rectbench.types import BoolArray, FloatArray
+from rectbench.types import FloatArray
 from rectbench.warps import Rectification
 
 Colour = tuple[int, int, int]
@@ -33,12 +33,14 @@ MOST_LINES = 24
 """Of the grid, along an image's longer side."""
 STRONG = 5
 """Each so manieth line is strong, and has its pixel written beside it."""
+LABELLED_AT = 0.35
+"""Of the image's width and height, where pixels are written: beside the middle, which is full of marks."""
 RING_STEPS_DEG = (5, 10, 15, 20, 30)
 MOST_RINGS = 5
 SPOKES = 12
 """Far points on each ring."""
-LONGER_SIDE_PX = 1600
-"""A smaller image is drawn larger, so that thin lines stay smooth."""
+FINENESS = 1.5
+"""Pixels of the drawing for one of the preview, so that thin lines stay smooth."""
 SHIFT = 4
 """Fractional bits of the coordinates that OpenCV draws at."""
 FONT = cv2.FONT_HERSHEY_SIMPLEX
@@ -52,34 +54,29 @@ def grid_preview(rect: Rectification) -> bytes:
     Dots that mark the same far points stand on one line in both.
     """
     shown = []
+    longer_side_px = round(FINENESS * min(max(rect.size), PREVIEW_WIDTH_PX / 2))
     for side in SIDES:
-        factor = drawing_factor(rect.warp(side).source)
+        factor = longer_side_px / max(rect.warp(side).source.size)
         map_x, map_y = (factor * table + np.float32((factor - 1) / 2) for table in rect.maps(side))
-        image = cv2.remap(grid_image(rect.rig, side), map_x, map_y, cv2.INTER_LINEAR)
+        image = cv2.remap(grid_image(rect.rig, side, longer_side_px), map_x, map_y, cv2.INTER_LINEAR)
         image[~rect.valid(side)] = BLIND_RGB
         shown.append(image)
     both = side_by_side(*shown)
     return encoded(np.concatenate([_caption(rect.rig, both.shape[1]), both]))
 
 
-def drawing_factor(camera: Camera) -> int:
-    """How many pixels of the drawing one of the camera's is, each way."""
-    return max(1, round(LONGER_SIDE_PX / max(camera.size)))
-
-
-def grid_image(rig: Rig, side: str) -> Rgb:
-    """The sensor of one side as squared paper, uint8 [H, W, 3], enlarged by `drawing_factor`.
+def grid_image(rig: Rig, side: str, longer_side_px: int) -> Rgb:
+    """The sensor of one side as squared paper, uint8 [H, W, 3], its longer side of so many pixels.
 
     Lines every so many source pixels, every fifth with its pixel; circles of equal angle from the optical
     axis, which a cross marks; the rim of what the lens shows. Dots are far points, the same in both images:
     directions on the left lens's circles.
     """
     camera: Camera = getattr(rig, side)
-    paper = _Paper(camera)
-    seen = camera.unproject(camera.pixel_grid())[1]
+    paper = _Paper(camera, longer_side_px)
     fine, strong = INK_RGB[side]
     pitch = pitch_px(camera)
-    for colour, every, width in ((fine, pitch, 1.6), (strong, STRONG * pitch, 2.4)):
+    for colour, every, width in ((fine, pitch, 2), (strong, STRONG * pitch, 3)):
         for axis in (0, 1):
             for place in range(0, camera.size[axis], every):
                 ends = np.zeros((2, 2))
@@ -93,12 +90,12 @@ def grid_image(rig: Rig, side: str) -> Rgb:
         inside = shown & camera.contains(pixels)
         for piece in np.split(np.arange(len(pixels)), np.flatnonzero(~inside) + 1):
             kept = piece[inside[piece]]
-            paper.line(pixels[kept], RING_RGB, 2.0)
+            paper.line(pixels[kept], RING_RGB, 2)
         if inside[45] and camera.project(_ring(ring_deg + step / 4, np.array([math.pi / 4])))[1][0]:
             paper.write(str(ring_deg), pixels[45], pitch, RING_RGB)
     for axis in (0, 1):
         for place in range(STRONG * pitch, camera.size[axis], STRONG * pitch):
-            at = np.array(camera.size) / 2
+            at = LABELLED_AT * np.array(camera.size)
             at[axis] = place
             paper.write(str(place), at, pitch, strong)
     R = np.eye(3) if side == "left" else rig.R_right_left
@@ -107,7 +104,7 @@ def grid_image(rig: Rig, side: str) -> Rgb:
         paper.dot(dot, pitch / 10, FAR_RGB)
     centre, _ = camera.project(np.array([0.0, 0.0, 1.0]))
     paper.cross(centre, pitch, AXIS_RGB)
-    paper.rim(seen, strong)
+    paper.rim(strong)
     return paper.image
 
 
@@ -156,19 +153,17 @@ def _caption(rig: Rig, width: int) -> Rgb:
 
 
 class _Paper:
-    """An enlarged image of a camera, drawn on at source pixels."""
+    """An image of a camera at another scale, drawn on at source pixels."""
 
-    def __init__(self, camera: Camera) -> None:
-        self.factor = drawing_factor(camera)
-        width, height = camera.size
-        self.image: Rgb = np.full((height * self.factor, width * self.factor, 3), PAPER_RGB, np.uint8)
-        self._stroke: float = max(self.image.shape) / LONGER_SIDE_PX
-        """Pixels of the drawing that a line of width 1 has."""
+    def __init__(self, camera: Camera, longer_side_px: int) -> None:
+        self.camera = camera
+        self.factor = longer_side_px / max(camera.size)
+        width, height = (max(1, math.ceil(self.factor * side)) for side in camera.size)
+        self.image: Rgb = np.full((height, width, 3), PAPER_RGB, np.uint8)
 
-    def line(self, pixels: FloatArray, colour: Colour, width: float) -> None:
+    def line(self, pixels: FloatArray, colour: Colour, width: int) -> None:
         if len(pixels) > 1:
-            points = [self._places(pixels)]
-            cv2.polylines(self.image, points, False, colour, self._width(width), cv2.LINE_AA, SHIFT)
+            cv2.polylines(self.image, [self._places(pixels)], False, colour, width, cv2.LINE_AA, SHIFT)
 
     def dot(self, pixel: FloatArray, radius_px: float, colour: Colour) -> None:
         x, y = map(int, self._places(pixel))
@@ -177,32 +172,29 @@ class _Paper:
 
     def cross(self, pixel: FloatArray, arm_px: float, colour: Colour) -> None:
         for arm in (np.array([arm_px, 0.0]), np.array([0.0, arm_px])):
-            self.line(np.stack([pixel - arm, pixel + arm]), colour, 2.5)
+            self.line(np.stack([pixel - arm, pixel + arm]), colour, 3)
 
     def write(self, text: str, pixel: FloatArray, height_px: float, colour: Colour) -> None:
         """A text about a third as high as `height_px`, with its lower left corner beside the pixel."""
         scale = 0.35 * height_px * self.factor / cv2.getTextSize("0", FONT, 1, 1)[0][1]
         x, y = (round(place / 2**SHIFT) for place in map(int, self._places(pixel)))
-        gap = round(4 * self._stroke)
-        for ink, width in ((PAPER_RGB, 4.0), (colour, 1.5)):
-            at = (x + gap, y - gap)
-            cv2.putText(self.image, text, at, FONT, scale, ink, self._width(width), cv2.LINE_AA)
+        for ink, width in ((PAPER_RGB, 4), (colour, 2)):
+            cv2.putText(
+                self.image, text, (x + GAP_PX // 2, y - GAP_PX // 2), FONT, scale, ink, width, cv2.LINE_AA
+            )
 
-    def rim(self, seen: BoolArray, colour: Colour) -> None:
+    def rim(self, colour: Colour) -> None:
         """Blind where the lens shows nothing, and a strong line about what it shows."""
-        height, width = seen.shape
-        size = (width * self.factor, height * self.factor)
-        shown: NDArray[np.uint8] = cv2.resize(seen.astype(np.uint8), size, interpolation=cv2.INTER_NEAREST)
-        self.image[shown == 0] = BLIND_RGB
-        framed = cv2.copyMakeBorder(shown, 1, 1, 1, 1, cv2.BORDER_CONSTANT, value=0)
+        rows, columns = np.indices(self.image.shape[:2])
+        places = (np.stack([columns, rows], axis=-1) + 0.5) / self.factor - 0.5
+        seen = self.camera.unproject(places)[1]
+        self.image[~seen] = BLIND_RGB
+        framed = cv2.copyMakeBorder(seen.astype(np.uint8), 1, 1, 1, 1, cv2.BORDER_CONSTANT, value=0)
         outlines, _ = cv2.findContours(framed, cv2.RETR_LIST, cv2.CHAIN_APPROX_NONE, offset=(-1, -1))
-        cv2.drawContours(self.image, outlines, -1, colour, self._width(6.0), cv2.LINE_AA)
+        cv2.drawContours(self.image, outlines, -1, colour, 6, cv2.LINE_AA)
 
     def _places(self, pixels: FloatArray) -> NDArray[np.int32]:
         """Source pixels where they are drawn, in OpenCV's fractions of a pixel."""
         places = self.factor * np.asarray(pixels) + (self.factor - 1) / 2
         rounded: NDArray[np.int32] = np.round(places * 2**SHIFT).astype(np.int32)
         return rounded
-
-    def _width(self, width: float) -> int:
-        return max(1, round(width * self._stroke))

@@ -59,7 +59,7 @@ def test_every_argument_is_called_by_its_option(verb: str, name: str) -> None:
 def test_a_refused_value_is_called_so(verb: str, name: str) -> None:
     """Of no field is this a value; those of any type are checked where they are used."""
     request: type[Request] = REQUESTS[verb]
-    needed = {key: "a" for key, field in request.model_fields.items() if field.is_required()}
+    needed = {key: "a" for key, field in request.model_fields.items() if field.is_required() or key == "rig"}
     said = {}
     for who in (spelling(verb), None):
         try:
@@ -69,7 +69,7 @@ def test_a_refused_value_is_called_so(verb: str, name: str) -> None:
             said[who] = str(error)
     if len(said) == 2:
         on_the_command_line, in_python = said.values()
-        assert on_the_command_line.startswith(spelling(verb)(name, None)), on_the_command_line
+        assert spelling(verb)(name, None) in on_the_command_line
         assert re.search(rf"\b{name.removesuffix('s')}", in_python), in_python
         assert "--" not in in_python
 
