@@ -143,6 +143,8 @@ def best_method(
         for candidate in tried:
             by_reason.setdefault(candidate.reason, []).append(candidate.method)
         reasons = "; ".join(f"{', '.join(methods)}: {reason}" for reason, methods in by_reason.items())
+        if len(by_reason) == 1 and len(tried) > 1:
+            (reasons,) = by_reason
         raise Unsupported(f"no method applies to rig {rig.name}: {reasons}")
     return Choice(tuple(sorted(tried, key=lambda candidate: _rank(candidate, tried))), chosen)
 
