@@ -111,7 +111,8 @@ def rectify_images(
         they show one, a calibration board.
     seed : of random choices.
     max_angle_deg, unit, cameras : the lenses' image circle, what translations are in, and which two
-        cameras are meant, where the calibration does not tell.
+        cameras are meant, where the calibration does not tell. An image circle that nobody states is read
+        from a mask beside images or calibration, or from the black rim; see the result's `circle`.
     progress : a bar on stderr; where there are several pairs and a terminal by default.
 
     Returns what was made; see `rectbench.applications.photographs.rectify` for the files, and for what

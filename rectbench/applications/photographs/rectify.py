@@ -48,7 +48,9 @@ def rectify_photographs(request: RectifyRequest, progress: bool | None = None) -
     Written are the rectification (`rectified.yaml`, `opencv.yml` where OpenCV has a form for it), masks,
     lookup tables, `preview.png`, `metrics.json`; and `left.png`, `right.png` of a single pair, or
     `left/NAME.png`, `right/NAME.png` and `pairs.csv` of several. Images keep their depth and channels.
-    `progress` is a bar on stderr, where there are several pairs; on a terminal by default.
+    An image circle that neither rig nor request states is read from masks or black rims, see
+    `pairs.finding.image_circle`. `progress` is a bar on stderr, where there are several pairs; on a terminal
+    by default.
 
     A pair that cannot be read, or has not the rig's size, is left out, with the reason. Raises InvalidInput
     where that is so of all, and for a wrong method, option or frame; Unsupported where no method that is
