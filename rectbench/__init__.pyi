@@ -6,6 +6,7 @@ from .api import rectify as rectify
 from .api import rectify_images as rectify_images
 from .api import render as render
 from .api import run as run
+from .api import write_tables as write_tables
 from .applications.choose_method import Choice as Choice
 from .applications.choose_method import best_method as best_method
 from .calibrations import fisheye_rigs as fisheye_rigs

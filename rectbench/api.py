@@ -111,7 +111,8 @@ def rectify_images(
         they show one, a calibration board.
     seed : of random choices.
     max_angle_deg, unit, cameras : the lenses' image circle, what translations are in, and which two
-        cameras are meant, where the calibration does not tell.
+        cameras are meant, where the calibration does not tell. An image circle that nobody states is read
+        from a mask beside images or calibration, or from the black rim; see the result's `circle`.
     progress : a bar on stderr; where there are several pairs and a terminal by default.
 
     Returns what was made; see `rectbench.applications.photographs.rectify` for the files, and for what
@@ -132,6 +133,43 @@ def rectify_images(
     from rectbench.applications.photographs.rectify import rectify_photographs
 
     return rectify_photographs(RectifyRequest(**given, **vars(framing or Framing())), progress)
+
+
+def write_tables(
+    rig: Rig | RigSource | Sequence[RigSource],
+    out: str | Path = "rectified",
+    *,
+    method: str | Path | None = None,
+    options: Mapping[str, Any] | None = None,
+    framing: Framing | None = None,
+    tables: Sequence[str] = ("npz", "opencv", "fixed"),
+    seed: int = 0,
+    image_size: tuple[int, int] | None = None,
+    max_angle_deg: float | None = None,
+    unit: str | None = None,
+    cameras: Sequence[str] | None = None,
+) -> RectifiedImages:
+    """Rectify a rig into a folder, without images: lookup tables, masks, descriptions, metrics.
+
+    Parameters
+    ----------
+    rig, out, method, options, framing, tables, seed, max_angle_deg, unit, cameras : as in `rectify_images`.
+        A method that works from matches gets exact ones, made from the rig's pose.
+    image_size : (width, height) of the source images, pixels, for a calibration that does not tell.
+
+    Written are the same files but for the images; `preview.png` shows a grid of source pixels. Returns what
+    was made. Raises what `rectify_images` raises; Unsupported for a method that works from images.
+
+    >>> import tempfile, rectbench as rb
+    >>> folder = Path(tempfile.mkdtemp())
+    >>> made = rb.write_tables(rb.load_rig("sony-as200v").scaled(0.1), folder, tables=["npz"])
+    >>> sorted(file.name for file in made.files)
+    ['left_mask.png', 'maps.npz', 'metrics.json', 'preview.png', 'rectified.yaml', 'right_mask.png']
+    """
+    given = {name: value for name, value in locals().items() if name != "framing"}
+    from rectbench.applications.photographs.rectify import rectify_photographs
+
+    return rectify_photographs(RectifyRequest(**given, **vars(framing or Framing())))
 
 
 def estimate_pose(
@@ -246,7 +284,7 @@ def export_dataset(
     >>> made = rb.export_dataset("street", "t265", "dataset", seeds=[0, 1])  # doctest: +SKIP
     >>> rb.export_dataset("street", "t265", "dataset", seeds=[])
     Traceback (most recent call last):
-    rectbench.errors.InvalidInput: seeds are empty; expected whole numbers from 0 on, a pair each
+    rectbench.errors.InvalidInput: seeds is empty; expected whole numbers from 0 on, a pair each
     """
     given = {name: value for name, value in locals().items() if name != "progress"}
     from rectbench.applications.export.dataset import export_dataset

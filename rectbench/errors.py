@@ -1,12 +1,15 @@
 """The errors rectbench raises on purpose.
 
 Every message is one line that names the thing, the value and what was expected, but where its class says
-that it has several; the command line prints it as it stands and exits with code 2.
+that it has several; the command line prints it as it stands and exits with code 2. An argument is called as
+whoever gave it spells it, see `argument`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from difflib import get_close_matches
 from typing import ClassVar
 
@@ -89,3 +92,56 @@ class InvalidResult(RectbenchError):
     Traceback (most recent call last):
     rectbench.errors.InvalidInput: scene nothing has no docstring; expected one line that says what it shows
     """
+
+
+Spelling = Callable[[str, object], str]
+"""An argument, by its name in Python and a value or None, as words."""
+
+
+def in_python(name: str, value: object = None) -> str:
+    """The spelling of a call.
+
+    >>> in_python("unit", "mm")
+    "unit='mm'"
+    """
+    return name if value is None else f"{name}={value!r}"
+
+
+_spelling: ContextVar[Spelling] = ContextVar("spelling", default=in_python)
+
+
+def argument(name: str, value: object = None) -> str:
+    """An argument as a message names it: as in Python, or while a verb runs as its option.
+
+    `name` is that of the parameter, and of the field of the verb's request; `value` one to give it.
+
+    >>> argument("max_angle_deg")
+    'max_angle_deg'
+    >>> with spelled(lambda name, value: "--" + name.replace("_", "-")):
+    ...     argument("max_angle_deg")
+    '--max-angle-deg'
+    """
+    return _spelling.get()(name, value)
+
+
+@contextmanager
+def spelled(spelling: Spelling) -> Iterator[None]:
+    """Let the messages that are made within name arguments so."""
+    before = _spelling.set(spelling)
+    try:
+        yield
+    finally:
+        _spelling.reset(before)
+
+
+@contextmanager
+def renamed(**names: str) -> Iterator[None]:
+    """Let the messages that are made within call arguments as the caller does: `renamed(size="image_size")`.
+
+    >>> with renamed(size="image_size"):
+    ...     argument("size")
+    'image_size'
+    """
+    outer = _spelling.get()
+    with spelled(lambda name, value: outer(names.get(name, name), value)):
+        yield

@@ -14,7 +14,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import pandas as pd
 
-from rectbench.errors import InvalidInput, Unsupported
+from rectbench.errors import InvalidInput, Unsupported, argument
 from rectbench.experiments.execution.outcomes import outcome_of
 from rectbench.metrics import frame_costs, row_error, row_misfit
 from rectbench.plugins.fitting import checked_options, fit
@@ -127,9 +127,10 @@ def best_method(
     chosen = framing or Framing()
     if chosen.crop is not None:
         same = f"methods are compared where all show the same, not in the crop {chosen.crop}"
-        raise InvalidInput(f"{same}; expected a coverage or fov_deg")
+        raise InvalidInput(f"{same}; expected {argument('coverage')} or {argument('fov_deg')}")
     if chosen.size is not None and chosen.focal_px is not None:
-        raise InvalidInput("size and focal_px together say what is shown; expected one of them to compare in")
+        both = f"{argument('size')} and {argument('focal_px')}"
+        raise InvalidInput(f"{both} together say what is shown; expected one of them to compare in")
     if chosen.fov_deg is None and chosen.coverage is None:
         chosen = replace(chosen, coverage=COVERAGE)
     problem = pose_problem(rig, images=images, matches=matches, seed=seed)
@@ -142,6 +143,8 @@ def best_method(
         for candidate in tried:
             by_reason.setdefault(candidate.reason, []).append(candidate.method)
         reasons = "; ".join(f"{', '.join(methods)}: {reason}" for reason, methods in by_reason.items())
+        if len(by_reason) == 1 and len(tried) > 1:
+            (reasons,) = by_reason
         raise Unsupported(f"no method applies to rig {rig.name}: {reasons}")
     return Choice(tuple(sorted(tried, key=lambda candidate: _rank(candidate, tried))), chosen)
 
@@ -158,8 +161,6 @@ def _tried(
     framing: Framing,
     trusted: Matches | None,
 ) -> Candidate:
-    if "images" in plugin.value.needs and problem.images is None:
-        return Candidate(plugin.name, status="unsupported", reason="works from images, and there are none")
     try:
         own = fit(plugin, problem, checked_options(plugin, {}))
         delivered = Delivered.of(own, view)

@@ -5,20 +5,30 @@ Arrays, as Python hands them over, are checked, or refused in one line.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
+from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rectbench.applications.requests.photographs import PoseRequest, PoseSettings, ReconstructRequest
-from rectbench.applications.requests.request import RigRequest, SeededMethodRequest, SizedRigRequest
+from rectbench.applications.requests.photographs import (
+    PoseRequest,
+    PoseSettings,
+    ReconstructRequest,
+    UncertaintyRequest,
+)
+from rectbench.applications.requests.request import RigRequest, SeededMethodRequest
 from rectbench.calibrations import load_rig, load_rig_of_images
-from rectbench.errors import InvalidInput
+from rectbench.errors import InvalidInput, renamed
 from rectbench.images.reading import read_images
 from rectbench.images.stereo_pair import StereoPair, check_size
 from rectbench.matching.pose.estimate import PoseEstimate, pose_from_images
+from rectbench.pairs.finding.image_circle import ImageCircle, image_circle
+from rectbench.pairs.finding.image_pairs import masks_beside
+from rectbench.pairs.finding.names import FilePair
 from rectbench.plugins.fitting import checked_options, fit
 from rectbench.plugins.rectifier import METHODS, pose_problem
 from rectbench.registry import registry
@@ -38,15 +48,35 @@ def rig_of(request: RigRequest, images: Images | None = None) -> Rig:
         width, height = images.left.shape[1::-1]
         rig = load_rig_of_images(request.rig, (width, height), request.unit, request.cameras)
     else:
-        size = request.size if isinstance(request, SizedRigRequest) else None
-        rig = load_rig(request.rig, size, request.unit, request.cameras)
+        with renamed(size=request.size_field or "size"):
+            rig = load_rig(request.rig, request.source_size, request.unit, request.cameras)
     return rig if request.max_angle_deg is None else rig.within(request.max_angle_deg)
 
 
-def calibrated_pair(request: PoseRequest | ReconstructRequest) -> tuple[Rig, Images]:
-    """The rig of a request, and its two photographs."""
+class CalibratedPair(NamedTuple):
+    """Two photographs and their rig."""
+
+    rig: Rig
+    images: Images
+    circle: ImageCircle | None = None
+    """What the rig's lenses were held to, where a mask or the images themselves show it."""
+
+
+def calibrated_pair(request: PoseRequest | ReconstructRequest | UncertaintyRequest) -> CalibratedPair:
+    """The two photographs of a request and its rig, within the image circle that masks or images show."""
+    assert request.left is not None
+    assert request.right is not None
     images = read_images(request.left, request.right)
-    return rig_of(request, images), images
+    rig = rig_of(request, images)
+    circle = circle_of(request, rig, [FilePair("", request.left, request.right)])
+    return CalibratedPair(rig.within(circle.angle_deg) if circle else rig, images, circle)
+
+
+def circle_of(request: RigRequest, rig: Rig, pairs: Sequence[FilePair]) -> ImageCircle | None:
+    """The image circle of a rig whose calibration tells none, see `pairs.finding.image_circle`."""
+    given = request.rig if isinstance(request.rig, list | tuple) else [request.rig]
+    calibration = [Path(file) for file in given if isinstance(file, str | os.PathLike)]
+    return image_circle(rig, pairs, masks_beside(pairs, calibration))
 
 
 def rectify_rig(

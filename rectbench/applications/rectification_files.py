@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rectbench.errors import Unsupported
-from rectbench.images.reading import encoded, rgb8
+from rectbench.images.reading import Rgb, encoded, rgb8
 from rectbench.warps import Rectification, opencv_form
 from rectbench.warps.description import rectification_text
 from rectbench.warps.lookup.resampling import Side
@@ -91,7 +91,12 @@ def image_file(image: NDArray[np.generic]) -> tuple[str, bytes]:
 
 
 def preview_file(left: NDArray[np.generic], right: NDArray[np.generic]) -> bytes:
-    """A PNG of both rectified images side by side, with scan lines across them, in 8 bits."""
+    """A PNG of both rectified images, see `side_by_side`."""
+    return encoded(side_by_side(left, right))
+
+
+def side_by_side(left: NDArray[np.generic], right: NDArray[np.generic]) -> Rgb:
+    """Both rectified images with scan lines across them, in 8 bits [H, W, 3]."""
     images = [rgb8(image) for image in (left, right)]
     scale = min(1.0, PREVIEW_WIDTH_PX / (2 * images[0].shape[1] + GAP_PX))
     if scale < 1:
@@ -101,7 +106,7 @@ def preview_file(left: NDArray[np.generic], right: NDArray[np.generic]) -> bytes
     both = np.concatenate([images[0], gap, images[1]], axis=1)
     rows = np.linspace(0, len(both) - 1, SCAN_LINES + 2)[1:-1].round().astype(int)
     both[rows] = LINE_RGB
-    return encoded(both)
+    return both
 
 
 def _float_maps(rect: Rectification) -> dict[str, NDArray[Any]]:

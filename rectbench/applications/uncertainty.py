@@ -7,12 +7,12 @@ from pathlib import Path
 from typing import Any
 
 from rectbench import metrics
-from rectbench.applications.one_rig import estimate_rig_pose, rectify_rig, rig_of
+from rectbench.applications.one_rig import calibrated_pair, estimate_rig_pose, rectify_rig, rig_of
 from rectbench.applications.requests.photographs import PoseSettings, UncertaintyRequest
 from rectbench.calibrations import load_covariance
-from rectbench.errors import InvalidInput
-from rectbench.images.reading import read_images
+from rectbench.errors import InvalidInput, argument
 from rectbench.metrics import Uncertainty
+from rectbench.pairs.finding.image_circle import ImageCircle
 from rectbench.reporting.pictures.uncertainty_maps import map_pixels, write_uncertainty
 from rectbench.rigs import Rig, RigCovariance
 from rectbench.types import Images
@@ -27,6 +27,8 @@ class PropagatedUncertainty:
     found: Uncertainty
     covariance: RigCovariance
     files: tuple[Path, ...]
+    circle: ImageCircle | None = None
+    """What the rig's lenses were held to, where a mask or the images themselves show it."""
 
 
 def propagate_uncertainty(request: UncertaintyRequest) -> PropagatedUncertainty:
@@ -36,10 +38,13 @@ def propagate_uncertainty(request: UncertaintyRequest) -> PropagatedUncertainty:
     which what is stated about lenses and baseline adds. Raises InvalidInput where nothing tells how sure
     the calibration is, and what `rectbench.rectify` raises; nothing is written then.
     """
-    images = None
-    if request.left is not None and request.right is not None:
-        images = read_images(request.left, request.right)
-    rig, covariance = _believed(rig_of(request, images), images, request)
+    circle: ImageCircle | None = None
+    images: Images | None = None
+    if request.left is None:
+        rig = rig_of(request)
+    else:
+        rig, images, circle = calibrated_pair(request)
+    rig, covariance = _believed(rig, images, request)
     rect = rectify_rig(rig, request, images=images)
     found = metrics.uncertainty(
         rect,
@@ -51,7 +56,7 @@ def propagate_uncertainty(request: UncertaintyRequest) -> PropagatedUncertainty:
     )
     facts = {"rig": rig.name, "method": request.method}
     files = write_uncertainty(found, covariance, rig.left, request.out, facts)
-    return PropagatedUncertainty(found, covariance, tuple(files))
+    return PropagatedUncertainty(found, covariance, tuple(files), circle)
 
 
 def _believed(rig: Rig, images: Images | None, request: UncertaintyRequest) -> tuple[Rig, RigCovariance]:
@@ -71,7 +76,7 @@ def _believed(rig: Rig, images: Images | None, request: UncertaintyRequest) -> t
         parts.append(RigCovariance.from_sigmas(rig, **sigmas, source=f"stated {words}"))
     if not parts:
         raise InvalidInput(
-            "nothing says how sure the calibration is; expected --covariance FILE, a size such as "
-            "--rotation-deg 0.05, or two images whose pose is estimated"
+            f"nothing says how sure the calibration is; expected {argument('covariance')}, a size such as "
+            f"{argument('rotation_deg', 0.05)}, or two images whose pose is estimated"
         )
     return rig, sum(parts[1:], start=parts[0])

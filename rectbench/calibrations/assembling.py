@@ -16,7 +16,7 @@ from rectbench.calibrations.contract import UNITS, Given, PosedCamera
 from rectbench.calibrations.documents import Section, Source, errors_at
 from rectbench.calibrations.rectified_pair import in_one_frame
 from rectbench.cameras import Camera
-from rectbench.errors import InvalidInput
+from rectbench.errors import InvalidInput, argument
 from rectbench.rigs.rig import Rig
 from rectbench.types import FloatArray
 
@@ -45,7 +45,9 @@ def assembled(
     where a baseline beyond `LONGEST_BASELINE_M` suggests millimetres that nobody has stated.
     """
     if None not in (unit, given.unit) and unit != given.unit:
-        raise InvalidInput(f"{where}: is in {unit}; expected unit={given.unit!r} as given beside the file")
+        raise InvalidInput(
+            f"{where}: is in {unit}; expected {argument('unit', given.unit)} as given beside the file"
+        )
     stated = unit or given.unit
     T = np.asarray(T_right_left, dtype=np.float64)
     with errors_at(where):
@@ -53,7 +55,7 @@ def assembled(
     if stated is None and rig.baseline_m > LONGEST_BASELINE_M:
         raise InvalidInput(
             f"{where}: the baseline is {rig.baseline_m:.6g} m; expected at most {LONGEST_BASELINE_M:g} m, "
-            "or unit='mm' (or cm, in, ft, m) stating what the file's translations are in"
+            f"or {argument('unit', 'mm')} (or cm, in, ft, m) stating what the file's translations are in"
         )
     return rig
 

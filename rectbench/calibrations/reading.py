@@ -17,7 +17,7 @@ from rectbench.calibrations.plausibility import tell_implausible
 from rectbench.calibrations.recognising import camera_format, formats, is_known
 from rectbench.calibrations.unknown import unknown_format
 from rectbench.calibrations.unread import tell_unread
-from rectbench.errors import InvalidInput
+from rectbench.errors import InvalidInput, argument
 from rectbench.rigs.rig import Rig
 
 RigSource = str | os.PathLike[str]
@@ -86,7 +86,7 @@ def load_rig_of_images(
         try:
             return load_rig(source, size=size, unit=unit, cameras=cameras)
         except InvalidInput as error:
-            raise (error if "`size=`" in str(reason) else reason) from None
+            raise (error if f"`{argument('size')}`" in str(reason) else reason) from None
 
 
 def _read(paths: list[RigSource], given: Given) -> Rig:
@@ -139,7 +139,7 @@ def _checked_cameras(cameras: Sequence[str] | None) -> tuple[str, str] | None:
     names = [] if isinstance(cameras, str) else list(cameras)
     if len(names) != 2 or not all(isinstance(name, str) for name in names):
         raise InvalidInput(
-            f"cameras is {shown(cameras)}; expected two names, the left and the right camera's"
+            f"{argument('cameras')} is {shown(cameras)}; expected two names, the left and the right camera's"
         )
     return names[0], names[1]
 
@@ -147,7 +147,8 @@ def _checked_cameras(cameras: Sequence[str] | None) -> tuple[str, str] | None:
 def _check_choice(source: Source, format: RigFormat, given: Given) -> None:
     if given.cameras and not format.has_many:
         raise InvalidInput(
-            f"{source.path}: is {format.name}, of two cameras; expected no `cameras=` {shown(given.cameras)}"
+            f"{source.path}: is {format.name}, of two cameras; expected no `{argument('cameras')}` "
+            f"{shown(given.cameras)}"
         )
 
 

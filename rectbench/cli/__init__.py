@@ -11,7 +11,7 @@ import logging
 import sys
 
 from rectbench.cli import machine, photographs, rendering, running
-from rectbench.cli.app import WRONG_USAGE, app
+from rectbench.cli.app import WRONG_USAGE, Verb, app
 from rectbench.errors import RectbenchError
 from rectbench.experiments.execution.worker import silence_warnings
 
@@ -33,7 +33,7 @@ for command in (
     machine.doctor,
     machine.gc,
 ):
-    app.command(command.__name__.strip("_"))(command)
+    app.command(command.__name__.strip("_"), cls=Verb)(command)
 
 
 def main() -> None:

@@ -13,10 +13,11 @@ from types import NoneType, UnionType
 from typing import Annotated, Any, TypeVar, Union, get_args, get_origin
 
 import typer
+import typer.core
 from pydantic.fields import FieldInfo
 
 from rectbench.applications.requests.request import Request, Word
-from rectbench.errors import InvalidInput
+from rectbench.errors import InvalidInput, in_python, spelled
 
 GOOD, FAILED, WRONG_USAGE, INCOMPLETE = 0, 1, 2, 3
 REST = "rest"
@@ -31,6 +32,24 @@ app = typer.Typer(
 )
 
 R = TypeVar("R", bound=Request)
+
+
+class Verb(typer.core.TyperCommand):
+    """A verb, whose messages name arguments by its own options."""
+
+    def invoke(self, ctx: Any) -> Any:
+        """Run it."""
+        with spelled(self._spelling):
+            return super().invoke(ctx)
+
+    def _spelling(self, name: str, value: object) -> str:
+        """The option or place that an argument has here; one that has none is spelled as in Python."""
+        params: list[Any] = self.params
+        for param in params:
+            if param.name == name:
+                called = param.opts[0] if param.param_type_name == "option" else param.metavar
+                return called if value is None else f"{called} {value}"
+        return in_python(name, value)
 
 
 def verb(request: type[R]) -> Callable[[Callable[[R], int]], Callable[..., int]]:

@@ -17,6 +17,7 @@ def rectify(request: RectifyRequest) -> int:
     """Rectify image pairs: images, masks, lookup tables, the rig's description, and what the frame costs.
 
     LEFT and RIGHT are two images, two folders, or two patterns such as 'left/*.png' in quotation marks.
+    Without them all but the images is written for --rig: tables, masks, description, a preview of a grid.
     Exit code 3 where some of several pairs had to be left out.
     """
     from rectbench.applications.photographs.rectify import rectify_photographs
@@ -35,10 +36,11 @@ def pose(request: PoseRequest) -> int:
     the estimate.
     """
     from rectbench.applications.one_rig import calibrated_pair, estimate_rig_pose
-    from rectbench.cli.printing.photographs import show_pose
+    from rectbench.cli.printing.photographs import show_circle, show_pose
 
-    rig, images = calibrated_pair(request)
+    rig, images, circle = calibrated_pair(request)
     estimate = estimate_rig_pose(images, rig, request)
+    show_circle(circle)
     show_pose(estimate, rig)
     if request.out is not None:
         estimate.rig(rig).save(request.out)
@@ -50,14 +52,16 @@ def pose(request: PoseRequest) -> int:
 def reconstruct(request: ReconstructRequest) -> int:
     """Reconstruct an image pair in 3-D: a coloured point cloud, depth, disparity and a picture."""
     from rectbench.applications.one_rig import calibrated_pair, rectify_rig
+    from rectbench.cli.printing.photographs import show_circle
     from rectbench.matching import reconstruct
     from rectbench.matching.dense.matchers import matcher_named
     from rectbench.reporting.pictures.reconstructed import write_reconstruction
 
     matcher_named(request.matcher)  # a wrong name is told before the work begins
-    rig, images = calibrated_pair(request)
+    rig, images, circle = calibrated_pair(request)
     rect, how = rectify_rig(rig, request, images=images), {"nearest_baselines", "pixels"}
     found = reconstruct(rect, *images, request.matcher, **request.model_dump(include=how))
+    show_circle(circle)
     for file in write_reconstruction(found, request.out):
         print(file)
     return GOOD
@@ -71,9 +75,10 @@ def uncertainty(request: UncertaintyRequest) -> int:
     which what is said about lenses and baseline adds.
     """
     from rectbench.applications.uncertainty import propagate_uncertainty
-    from rectbench.cli.printing.photographs import show_uncertainty
+    from rectbench.cli.printing.photographs import show_circle, show_uncertainty
 
     propagated = propagate_uncertainty(request)
+    show_circle(propagated.circle)
     show_uncertainty(propagated.found, propagated.covariance)
     for file in propagated.files:
         print(file)

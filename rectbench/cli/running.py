@@ -35,9 +35,9 @@ def run(request: RunRequest) -> int:
     folder = run_folder(request.report, request.out)
     show_summary(folder)
     if not (table["status"] == "ok").any():
-        row = table.iloc[0]
-        first = f"the first cell says {row['status']}: {row['reason']}"
-        return _incomplete(f"nothing was measured; {first}")
+        row, is_one = table.iloc[0], len(table[["status", "reason"]].drop_duplicates()) == 1
+        whose = "every cell" if is_one and len(table) > 1 else "the first cell"
+        return _incomplete(f"nothing was measured; {whose} says {row['status']}: {row['reason']}")
     if unreadable := unreadable_images(folder):
         return _incomplete(f"left out, since OpenCV cannot read it: {', '.join(unreadable)}")
     return GOOD

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from rectbench.errors import InvalidInput
+from rectbench.errors import InvalidInput, argument
 from rectbench.pairs.spec import (
     AS_CALIBRATED,
     CALIBRATED,
@@ -103,7 +103,7 @@ class _Source:
     def located(self, report: str, data: str | Path | None) -> Self:
         """The same; raises InvalidInput for a folder of photographs, which nobody needs."""
         if data is not None:
-            raise InvalidInput(f"report {report} takes no photographs; expected no --data")
+            raise InvalidInput(f"report {report} takes no photographs; expected no {argument('data')}")
         return self
 
     def require_poses(self) -> None:
@@ -227,7 +227,8 @@ class Photographed(_Source):
         from rectbench.pairs.finding.photographs import find_photographs
 
         if data is None:
-            raise InvalidInput(f"report {report} takes photographs; expected a folder of them, --data FOLDER")
+            expected = f"a folder of them, {argument('data')}"
+            raise InvalidInput(f"report {report} takes photographs; expected {expected}")
         found = find_photographs(data)
         pairs = tuple((pair.name, pair.calibration.name, AS_CALIBRATED) for pair in found.pairs)
         return replace(self, part=replace(self.part, pairs=pairs), found=found)

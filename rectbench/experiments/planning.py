@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from rectbench.errors import InvalidInput
+from rectbench.errors import InvalidInput, argument
 from rectbench.experiments.naming import plugins_named
 from rectbench.experiments.pair_sources import PairSource, StatedPart
 from rectbench.experiments.selecting import OwnNames, Selection, own_names, selected, selects_all
@@ -62,7 +62,8 @@ def make_plan(report: Report, selection: Selection | None = None, data: str | Pa
     chosen = selection or Selection()
     sources = [source.located(report.name, data) for source in report.sources]
     if chosen.scenes is not None and not any("scenes" in source.selects for source in sources):
-        raise InvalidInput(f"report {report.name} is of lenses without a scene; expected no --scenes")
+        lenses = f"report {report.name} is of lenses without a scene"
+        raise InvalidInput(f"{lenses}; expected no {argument('scenes')}")
     own = [own_names(source, sources) for source in sources]
     tasks: dict[Cell, CellTask] = {}
     for source, names in zip(sources, own, strict=True):

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from pydantic import ValidationError
 
-from rectbench.errors import InvalidInput, InvalidResult, UnknownName
+from rectbench.errors import InvalidInput, InvalidResult, UnknownName, Unsupported
 from rectbench.plugins.rectifier import Options, Problem, Rectifier
 from rectbench.registry import Plugin
 from rectbench.warps import Rectification, Warp
@@ -36,7 +36,12 @@ def checked_options(plugin: Plugin[Rectifier], given: Mapping[str, Any]) -> Opti
 
 
 def fit(plugin: Plugin[Rectifier], problem: Problem, options: Options) -> Rectification:
-    """The method's answer, checked; raises InvalidResult for one of the wrong type, shape or values."""
+    """The method's answer, checked; raises InvalidResult for one of the wrong type, shape or values.
+
+    Raises Unsupported where the method works from images and the problem has none.
+    """
+    if "images" in plugin.value.needs and problem.images is None:
+        raise Unsupported(f"{plugin.name} works from images, and there are none")
     return checked_result(plugin.name, plugin.value.fit(problem, options), problem)
 
 

@@ -8,7 +8,7 @@ from typing import Any, Literal, get_args, overload
 
 import numpy as np
 
-from rectbench.errors import InvalidInput, UnknownName
+from rectbench.errors import InvalidInput, UnknownName, argument
 from rectbench.images.stereo_pair import Image, StereoPair
 from rectbench.rendering.images import radiance, srgb8
 from rectbench.rendering.integrator import fast_integrator
@@ -150,7 +150,7 @@ def _check(rig: object, seed: object, spp: object) -> None:
     if not isinstance(rig, Rig):
         raise InvalidInput(f"rig is {type(rig).__name__}; expected a Rig")
     if isinstance(seed, bool) or not isinstance(seed, Integral) or seed < 0:
-        raise InvalidInput(f"seed is {seed!r}; expected a whole number from 0")
+        raise InvalidInput(f"{argument('seed')} is {seed!r}; expected a whole number from 0")
     whole = isinstance(spp, Integral) and not isinstance(spp, bool)
     if not whole or not 1 <= spp <= MOST_SAMPLES or spp & (spp - 1):  # type: ignore[operator]
-        raise InvalidInput(f"spp is {spp!r}; expected a power of two from 1 to {MOST_SAMPLES}")
+        raise InvalidInput(f"{argument('spp')} is {spp!r}; expected a power of two from 1 to {MOST_SAMPLES}")

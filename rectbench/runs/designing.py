@@ -11,7 +11,7 @@ from typing import Any
 
 import pandas as pd
 
-from rectbench.errors import InvalidInput, UnknownName
+from rectbench.errors import InvalidInput, UnknownName, argument
 from rectbench.pairs.spec import NO_SCENE
 from rectbench.plugins.metric import METRICS, Column
 from rectbench.plugins.result import EXACT_POSE, distinct
@@ -95,7 +95,9 @@ def _column(run: Run, key: str) -> Column:
     if key in metrics.names():
         own = [column.key for column in metrics.get(key).value.columns if column.key in run.metrics]
         if own:
-            raise InvalidInput(f"metric is {key}, of several numbers; expected one of {', '.join(own)}")
+            raise InvalidInput(
+                f"{argument('metric')} is {key}, of several numbers; expected one of {', '.join(own)}"
+            )
     if any(column.key == key for column in run.catalogue.columns):
         whose = "`rectbench list metrics` tells which metric has it"
         raise InvalidInput(f"{run.folder} has no {key}, which its report does not measure; {whose}")

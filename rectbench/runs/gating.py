@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from rectbench.errors import InvalidInput, UnknownName
+from rectbench.errors import InvalidInput, UnknownName, argument
 from rectbench.experiments.spec import REPORTS
 from rectbench.pairs.spec import ESTIMATED
 from rectbench.plugins.cell import IDENTITY, Cell
@@ -60,7 +60,8 @@ def accepted_path(run_dir: Path) -> Path:
     record = read_record(run_dir)
     if record.photographs is not None:
         raise InvalidInput(
-            f"{run_dir} is a run of photographs, whose numbers are not the report's; expected --accepted FILE"
+            f"{run_dir} is a run of photographs, whose numbers are not the report's; expected a file of "
+            f"their own, {argument('accepted')}"
         )
     try:
         report = registry(REPORTS).get(record.report).path

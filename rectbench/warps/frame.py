@@ -12,7 +12,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from rectbench.cameras import Camera
-from rectbench.errors import Unsupported
+from rectbench.errors import Unsupported, argument
 from rectbench.rigs import Rig
 from rectbench.types import FloatArray
 
@@ -87,7 +87,7 @@ def refuse_epipole_in_view(rig: Rig) -> None:
                 raise Unsupported(
                     f"an epipole of rig {rig.name} lies in the {side} view, at pixel "
                     f"({u:.0f}, {v:.0f}) of {camera.width}x{camera.height}; if the lens shows nothing there, "
-                    "state its image circle (max_angle_deg)"
+                    f"state its image circle ({argument('max_angle_deg')})"
                 )
 
 

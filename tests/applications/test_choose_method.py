@@ -80,9 +80,14 @@ def test_methods_that_do_not_apply_are_listed_with_their_reason(tmp_path: Path) 
     assert table.loc["breaks", "status"] == "error"
     with pytest.raises(rb.Unsupported, match=r"no method applies.*refuses: an epipole"):
         best_method(RIG, methods=[refuses])
+    also = write_method(tmp_path, "also", "raise rb.Unsupported('an epipole')")
+    with pytest.raises(rb.Unsupported, match=f"^no method applies to rig {RIG.name}: an epipole$"):
+        best_method(RIG, methods=[refuses, also])  # a reason that all share is said once
+    with pytest.raises(rb.Unsupported, match=r"refuses, also: an epipole; breaks: ValueError: no"):
+        best_method(RIG, methods=[refuses, also, breaks])
     forget_plugins()
 
 
 def test_frames_in_which_methods_show_different_things_are_refused() -> None:
-    with pytest.raises(rb.InvalidInput, match="expected a coverage or fov_deg"):
+    with pytest.raises(rb.InvalidInput, match="expected coverage or fov_deg"):
         best_method(RIG, framing=Framing(crop="valid"))

@@ -270,7 +270,7 @@ def refuse_to_render(*args: object, **kwargs: object) -> None:
     [
         ({"spp": 16}, InvalidInput, "holds pair 000000 of other settings"),
         ({"method": "conventional"}, InvalidInput, "holds pair 000000 of other settings"),
-        ({"seeds": ()}, InvalidInput, "seeds are empty"),
+        ({"seeds": ()}, InvalidInput, "seeds is empty"),
         ({"seeds": (-1,)}, InvalidInput, "seed is -1"),
         ({"motion": "sidewards"}, UnknownName, "unknown motion 'sidewards'; did you mean sideways"),
         ({"method": "hartley"}, InvalidInput, "hartley works from matches"),
@@ -343,4 +343,4 @@ def test_the_command_line_exports(scene: Path, tmp_path: Path, shell: Shell) -> 
     assert {file.name for file in description.iterdir()} == {"rectified.yaml", "opencv.yml"}
     code, _, err = shell("export", scene, "t265", "-o", tmp_path / "set", "--seeds", "two", *words)
     assert code == 2
-    assert "seeds are two; expected whole numbers" in err
+    assert "--seeds is two; expected whole numbers" in err

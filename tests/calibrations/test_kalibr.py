@@ -142,7 +142,7 @@ def test_opencv_s_yaml_header_is_no_hindrance(path: Path) -> None:
         (
             "cam0.resolution",
             None,
-            "cam0.resolution is missing; expected [width, height] in whole pixels, or `size=`",
+            "cam0.resolution is missing; expected [width, height] in whole pixels, or `size`",
         ),
         ("cam0", "none", "cam0 is 'none'; expected the first camera, the left one"),
     ],

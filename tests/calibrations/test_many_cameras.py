@@ -166,7 +166,7 @@ def test_a_zed_s_resolution_is_chosen_by_the_size(tmp_path: Path) -> None:
         load_rig(path, size=(2208, 1242)).left.params["fx"]
         == 2 * load_rig(path, size=(1280, 720)).left.params["fx"]
     )
-    with pytest.raises(InvalidInput, match="holds 2 resolutions; expected `size=` 1280x720 or 2208x1242"):
+    with pytest.raises(InvalidInput, match="holds 2 resolutions; expected `size` 1280x720 or 2208x1242"):
         load_rig(path)
-    with pytest.raises(InvalidInput, match="holds no cameras of \\(640, 480\\); expected `size=` 1280x720"):
+    with pytest.raises(InvalidInput, match="holds no cameras of \\(640, 480\\); expected `size` 1280x720"):
         load_rig(path, size=(640, 480))

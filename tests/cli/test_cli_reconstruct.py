@@ -76,7 +76,7 @@ def test_depth_beyond_what_16_bits_hold_is_none(
         ("--option alpha=1", "unknown option of local-homography 'alpha'"),
         ("--rig t265", "expected 848x800"),
         ("--rig absent.yaml", "absent.yaml"),
-        ("--nearest-baselines 0", "nearest_baselines is 0"),
+        ("--nearest-baselines 0", "--nearest-baselines is 0"),
         ("--pixels -5", "pixels is -5"),
     ],
 )

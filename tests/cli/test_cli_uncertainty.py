@@ -108,13 +108,16 @@ def test_a_file_and_stated_sizes_add(shell: Shell) -> None:
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        ("", "nothing says how sure the calibration is; expected --covariance FILE, a size"),
+        (
+            "",
+            "nothing says how sure the calibration is; expected --covariance, a size such as",
+        ),
         ("--rotation-deg -1", "--rotation-deg"),
         ("--rotation-deg 500", "rotation_deg is 500; expected degrees below 180"),
         ("--rotation-deg 1 --depth-m 1,near", "--depth-m is 1,near; expected distances in metres"),
-        ("--rotation-deg 1 --depth-m -2", "depth_m is [-2.0]; expected distances above 0"),
+        ("--rotation-deg 1 --depth-m -2", "--depth-m is [-2.0]; expected distances above 0"),
         ("--rotation-deg 1 --depth-m 1,2,3,4,5", "5 distances were given; expected at most 4"),
-        ("--rotation-deg 1 --matching-px inf", "matching_px is inf"),
+        ("--rotation-deg 1 --matching-px inf", "--matching-px is inf"),
         ("--rotation-deg 1 -m flat", "unknown method 'flat'"),
         ("left.png --rotation-deg 1", "one image was given, left.png; expected LEFT and RIGHT"),
         ("--covariance none.yaml", "none.yaml: cannot be read"),

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from rectbench.errors import InvalidInput
-from rectbench.pairs.finding.image_pairs import image_pairs
+from rectbench.pairs.finding.image_pairs import image_pairs, masks_beside
 from rectbench.pairs.finding.names import Pairing
 
 
@@ -51,6 +51,28 @@ def test_pairs_below_several_folders_have_names_of_their_own(tmp_path: Path) -> 
     touched(tmp_path, *(f"{day}/{side}/1.png" for day in ("mon", "tue") for side in ("left", "right")))
     found = image_pairs(str(tmp_path / "*/left/*.png"), str(tmp_path / "*/right/*.png"))
     assert len({name for name, _, _ in names(found)}) == 2
+
+
+def test_masks_are_no_images_of_a_pair_but_where_they_are_named(tmp_path: Path) -> None:
+    touched(tmp_path, "left/1.png", "left/mask.png", "right/1.png", "right/mask.png", "fisheye_mask.png")
+    for words in (("left", "right"), ("left/*.png", "right/*.png")):
+        found = image_pairs(*(str(tmp_path / word) for word in words))
+        assert names(found) == [("1", "1.png", "1.png")]
+        assert found.left_out == ()
+    assert len(image_pairs(str(tmp_path / "left/mask.png"), str(tmp_path / "right/mask.png")).pairs) == 1
+    (tmp_path / "left/1.png").unlink()
+    with pytest.raises(InvalidInput, match="holds no left image"):
+        image_pairs(str(tmp_path / "left"), str(tmp_path / "right"))
+
+
+def test_masks_are_sought_beside_the_images_and_the_calibration(tmp_path: Path) -> None:
+    calibrations = ("calib/rig.yaml", "calib/lens_mask.png", "calib/below/mask.png")
+    touched(tmp_path, "left/1.png", "left/mask.png", "right/1.png", "right/masked.png", *calibrations)
+    found = image_pairs(str(tmp_path / "left/1.png"), str(tmp_path / "right/1.png"))
+    for calibration in ("calib/rig.yaml", "calib"):
+        masks = masks_beside(found.pairs, [tmp_path / calibration])
+        assert [mask.name for mask in masks] == ["lens_mask.png", "mask.png"]
+    assert [mask.name for mask in masks_beside(found.pairs, [tmp_path / "calib/gone"])] == ["mask.png"]
 
 
 def test_an_image_without_a_partner_is_left_out_and_named(tmp_path: Path) -> None:

@@ -17,6 +17,7 @@ from rectbench.errors import InvalidInput, PoseNotFound
 from rectbench.matching.boards.corners import board_matches
 from rectbench.matching.pose.consistent import consistent_matches
 from rectbench.metrics import RowError, row_error
+from rectbench.pairs.finding.image_circle import ImageCircle
 from rectbench.pairs.finding.names import FilePair, LeftOut
 from rectbench.rigs import Rig
 from rectbench.types import Images, Matches
@@ -80,7 +81,7 @@ class OwnMatches:
 
 @dataclass(frozen=True, eq=False)
 class RectifiedImages:
-    """What was made of the photographs of a rig."""
+    """What was made of the photographs of a rig, or of the rig alone."""
 
     method: str
     rectification: Rectification
@@ -90,8 +91,10 @@ class RectifiedImages:
     """Of the frame that the method makes by itself; None where that is the frame."""
     choice: Choice | None
     """How the method was chosen, where it was."""
-    unpaired: tuple[LeftOut, ...]
+    unpaired: tuple[LeftOut, ...] = ()
     """Images without a partner."""
+    circle: ImageCircle | None = None
+    """What the lenses were held to, where a mask or the images themselves show it."""
     pairs: tuple[PairResult, ...] = ()
     files: tuple[Path, ...] = ()
 
@@ -128,6 +131,8 @@ class RectifiedImages:
 def summary_files(made: RectifiedImages) -> Files:
     """`metrics.json`, and of several pairs `pairs.csv`."""
     metrics: dict[str, Any] = {"method": made.method, "frame": dict(made.costs)}
+    if made.circle:
+        metrics["image_circle"] = {"max_angle_deg": made.circle.angle_deg, "why": made.circle.told}
     if made.own_costs:
         metrics["frame_of_the_method"] = dict(made.own_costs)
     if made.choice:

@@ -13,17 +13,18 @@ import numpy as np
 
 from rectbench.applications import rectification_files as encode
 from rectbench.applications.choose_method import Choice, best_method, uncalibrated_methods
-from rectbench.applications.one_rig import rig_of
+from rectbench.applications.one_rig import circle_of, rig_of
 from rectbench.applications.photographs.rectified import (
     OwnMatches,
     PairResult,
     RectifiedImages,
     summary_files,
 )
+from rectbench.applications.pixel_grid import grid_preview
 from rectbench.applications.rectification_files import SIDES, Files
 from rectbench.applications.requests.photographs import BEST, FramingRequest, RectifyRequest
 from rectbench.calibrations import holds_many
-from rectbench.errors import InvalidInput, UnknownName
+from rectbench.errors import InvalidInput, UnknownName, argument
 from rectbench.images.reading import read_images
 from rectbench.images.stereo_pair import check_size
 from rectbench.matching.pose.uncalibrated import uncalibrated
@@ -42,12 +43,14 @@ from rectbench.writing import check_writable, write_atomically
 
 
 def rectify_photographs(request: RectifyRequest, progress: bool | None = None) -> RectifiedImages:
-    """Rectify photographs of one rig into a folder.
+    """Rectify photographs of one rig into a folder; without any, write all but the images.
 
     Written are the rectification (`rectified.yaml`, `opencv.yml` where OpenCV has a form for it), masks,
     lookup tables, `preview.png`, `metrics.json`; and `left.png`, `right.png` of a single pair, or
     `left/NAME.png`, `right/NAME.png` and `pairs.csv` of several. Images keep their depth and channels.
-    `progress` is a bar on stderr, where there are several pairs; on a terminal by default.
+    An image circle that neither rig nor request states is read from masks or black rims, see
+    `pairs.finding.image_circle`. `progress` is a bar on stderr, where there are several pairs; on a terminal
+    by default.
 
     A pair that cannot be read, or has not the rig's size, is left out, with the reason. Raises InvalidInput
     where that is so of all, and for a wrong method, option or frame; Unsupported where no method that is
@@ -57,22 +60,27 @@ def rectify_photographs(request: RectifyRequest, progress: bool | None = None) -
         if kind not in encode.TABLES:
             raise UnknownName("kind of tables", kind, encode.TABLES)
     check_writable(request.out)
+    if request.left is None or request.right is None:
+        return _tables_alone(request)
     found = image_pairs(request.left, request.right)
     pairs = found.pairs
     rig, matches = _calibration(request, pairs)
-    _refuse_overwriting(pairs, request.out)
+    circle = circle_of(request, rig, pairs) if request.rig is not None else None
+    if circle is not None:
+        rig = rig.within(circle.angle_deg)
+    _refuse_overwriting(pairs, circle.masks if circle else (), request.out)
     readable, first = _first_readable(pairs, rig)
     known = OwnMatches.of(first, rig, request.seed) if request.measured_pairs else OwnMatches()
-    framing = Framing(**{name: getattr(request, name) for name in FramingRequest.model_fields})
-    choice, own, rect = _rectification(rig, request, framing, first, matches, known)
+    choice, own, rect = _rectification(rig, request, first, matches, known.best)
     resamplers = [Resampler.of(rect, side, "area" if request.antialias else "point") for side in SIDES]
     made = RectifiedImages(
-        method=choice.best.method if choice else registry(METHODS).get(request.method_name).name,
+        method=_method(request, choice),
         rectification=rect,
         costs=frame_costs(rect, rig) | _averaging(resamplers),
         own_costs=None if own is None else frame_costs(own, rig),
         choice=choice,
         unpaired=found.left_out,
+        circle=circle,
     )
     contents = _rig_files(made, request)
     shown = [resample(image) for resample, image in zip(resamplers, first, strict=True)]
@@ -100,6 +108,26 @@ def rectify_photographs(request: RectifyRequest, progress: bool | None = None) -
     return replace(made, files=(*files, *_written(summary_files(made), request.out)))
 
 
+def _tables_alone(request: RectifyRequest) -> RectifiedImages:
+    """All that needs no photographs, with a pixel grid as the preview."""
+    rig = rig_of(request)
+    choice, own, rect = _rectification(rig, request)
+    made = RectifiedImages(
+        method=_method(request, choice),
+        rectification=rect,
+        costs=frame_costs(rect, rig),
+        own_costs=None if own is None else frame_costs(own, rig),
+        choice=choice,
+    )
+    contents = _rig_files(made, request) | {"preview.png": grid_preview(rect)} | summary_files(made)
+    _remove_earlier(request.out, contents)
+    return replace(made, files=tuple(_written(contents, request.out)))
+
+
+def _method(request: RectifyRequest, choice: Choice | None) -> str:
+    return choice.best.method if choice else registry(METHODS).get(request.method_name).name
+
+
 def _calibration(request: RectifyRequest, pairs: Sequence[FilePair]) -> tuple[Rig, Matches | None]:
     """The rig of a request; without one, one that is assumed, and the matches that methods work from."""
     _, images = _first_readable(pairs)
@@ -118,24 +146,24 @@ def _refuse_guessed_cameras(rig: Any, pair: FilePair) -> None:
     if numbers is not None and any(map(holds_many, files)):
         raise InvalidInput(
             f"{pair.left} is of camera {numbers[0]}, and {files[0]} may hold many; expected the names of two "
-            "(cameras, --cameras)"
+            f"({argument('cameras')})"
         )
 
 
 def _rectification(
     rig: Rig,
     request: RectifyRequest,
-    framing: Framing,
-    images: Images,
-    matches: Matches | None,
-    known: OwnMatches,
+    images: Images | None = None,
+    matches: Matches | None = None,
+    trusted: Matches | None = None,
 ) -> tuple[Choice | None, Rectification | None, Rectification]:
     """How it was chosen, if it was; the method's own frame, if it is another; and the one that is wanted."""
+    framing = Framing(**{name: getattr(request, name) for name in FramingRequest.model_fields})
     without_calibration = request.rig is None
     given: dict[str, Any] = {"images": images, "matches": matches, "seed": request.seed}
     if request.method == BEST:
         methods = uncalibrated_methods() if without_calibration else None
-        choice = best_method(rig, framing=framing, trusted=known.best, methods=methods, **given)
+        choice = best_method(rig, framing=framing, trusted=trusted, methods=methods, **given)
         return choice, None, choice.rectification
     plugin = registry(METHODS).get(request.method_name)
     if without_calibration and "pose" in plugin.value.needs:
@@ -152,6 +180,8 @@ def _rig_files(made: RectifiedImages, request: RectifyRequest) -> Files:
     facts: dict[str, Any] = {"method": made.method, "options": dict(request.options)}
     if made.choice:
         facts["chosen"] = made.choice.why
+    if made.circle:
+        facts["image_circle"] = made.circle.told
     if request.rig is None:
         facts["calibrated"] = "no: the rig below is assumed, and its baseline is 1 of an unknown unit"
     contents = encode.description_files(made.rectification, **facts) | encode.mask_files(made.rectification)
@@ -200,13 +230,14 @@ def _image_files(images: Images, resamplers: Sequence[Resampler], stem: str) -> 
         return {name + suffix: data for name, (suffix, data) in zip(names, encoded, strict=True)}
 
 
-def _refuse_overwriting(pairs: Sequence[FilePair], out: Path) -> None:
-    """Raise InvalidInput where an image would be written over a photograph."""
+def _refuse_overwriting(pairs: Sequence[FilePair], masks: Sequence[Path], out: Path) -> None:
+    """Raise InvalidInput where an image would be written over a photograph, or over a mask of its lenses."""
     names = [f"{side}/{pair.name}" for pair in pairs for side in SIDES] if len(pairs) > 1 else SIDES
     written = {(out / (name + suffix)).resolve() for name in names for suffix in encode.SUFFIXES}
-    for photograph in (path for pair in pairs for path in pair.files):
-        if photograph.resolve() in written:
-            raise InvalidInput(f"{photograph} would be overwritten; expected another folder than {out}")
+    written |= {(out / f"{side}_mask.png").resolve() for side in SIDES}
+    for given in (*(path for pair in pairs for path in pair.files), *masks):
+        if given.resolve() in written:
+            raise InvalidInput(f"{given} would be overwritten; expected another folder than {out}")
 
 
 OWN_FILES = ("opencv.yml", "maps.npz", "maps.yml.gz", "maps_fixed.yml.gz", "pairs.csv", "metrics.json")

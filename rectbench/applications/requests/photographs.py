@@ -24,10 +24,18 @@ from rectbench.applications.requests.request import (
     positional,
     word,
 )
-from rectbench.errors import InvalidInput
+from rectbench.errors import InvalidInput, argument
 from rectbench.plugins.defaults import DEFAULT_METHOD, UNCALIBRATED_METHOD
 
 BEST = "best"
+
+
+def _check_images(left: str | Path | None, right: str | Path | None) -> None:
+    """Raise InvalidInput for one image without the other."""
+    if (left is None) != (right is None):
+        both = f"{argument('left')} and {argument('right')}"
+        only = f"one image was given, {left or right}"
+        raise InvalidInput(f"{only}; expected {both}, or none and a calibration as {argument('rig')}")
 
 
 class FramingRequest(Request):
@@ -55,12 +63,18 @@ class FramingRequest(Request):
 
 
 class RectifyRequest(FramingRequest, OptionsRequest, RigRequest):
-    """Photographs to be rectified into a folder."""
+    """Photographs to be rectified into a folder; or a rig alone, of which all but the images is written."""
 
-    left: Text = positional("LEFT", "The left image, folder or pattern.")
-    right: Text = positional("RIGHT", "The right one.")
+    size_field = "image_size"
+    left: Text | None = positional("LEFT", "The left image, folder or pattern.", None)
+    right: Text | None = positional("RIGHT", "The right one. Without both: tables for a rig.", None)
     rig: Any = word(
         f"{CALIBRATION} Without one, methods that work from matches alone.", metavar="CALIB", takes_rest=True
+    )
+    image_size: tuple[int, int] | None = word(
+        "The source images' size, where there are none and the calibration does not tell.",
+        metavar="WxH",
+        parse=words.size_in,
     )
     out: Path = word("Folder for what is made.", *OUT, default=Path("rectified"))
     method: Text | None = word(
@@ -88,8 +102,21 @@ class RectifyRequest(FramingRequest, OptionsRequest, RigRequest):
 
     @model_validator(mode="after")
     def _checked(self) -> Self:
+        _check_images(self.left, self.right)
+        images = f"{argument('left')} and {argument('right')}"
+        if self.left is None and self.rig is None:
+            raise InvalidInput(
+                f"there are no images and no calibration; expected {images}, or {argument('rig')}"
+            )
+        if self.left is None and self.antialias:
+            raise InvalidInput(
+                f"{argument('antialias')} is given without images; expected {images} beside it"
+            )
+        if self.left is not None and self.image_size is not None:
+            raise InvalidInput(f"images tell their size themselves; expected no {argument('image_size')}")
         if self.method == BEST and self.options:
-            raise InvalidInput("options are given for method best; expected them for a method by its name")
+            given = f"{argument('options')} is given beside {argument('method', BEST)}"
+            raise InvalidInput(f"{given}; expected it beside a method by its name")
         return self
 
     @property
@@ -156,8 +183,7 @@ class UncertaintyRequest(SeededMethodRequest, SizedRigRequest):
 
     @model_validator(mode="after")
     def _checked(self) -> Self:
-        if (self.left is None) != (self.right is None):
-            raise InvalidInput(f"one image was given, {self.left}; expected LEFT and RIGHT, or none")
+        _check_images(self.left, self.right)
         return self
 
     @property

@@ -18,7 +18,7 @@ from rectbench.applications.requests.request import (
     word,
 )
 from rectbench.applications.requests.words import whole_numbers_in
-from rectbench.errors import InvalidInput
+from rectbench.errors import InvalidInput, argument
 
 
 class StageRequest(SizedRigRequest):
@@ -49,5 +49,5 @@ class ExportRequest(MethodRequest, StageRequest):
     @model_validator(mode="after")
     def _checked(self) -> Self:
         if not self.seeds:
-            raise InvalidInput("seeds are empty; expected whole numbers from 0 on, a pair each")
+            raise InvalidInput(f"{argument('seeds')} is empty; expected whole numbers from 0 on, a pair each")
         return self

@@ -6,12 +6,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from numbers import Integral, Real
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, ValidationInfo
 
 from rectbench.applications.requests.words import options_in, size_in
-from rectbench.errors import InvalidInput, RectbenchError
+from rectbench.errors import InvalidInput, RectbenchError, argument
 from rectbench.plugins.defaults import DEFAULT_METHOD
 
 
@@ -68,9 +68,9 @@ def _refusal(error: ValidationError) -> RectbenchError:
         return cause
     name = str(fault["loc"][0])
     if fault["type"] == "missing":
-        return InvalidInput(f"{name} is missing; expected it to be given")
+        return InvalidInput(f"{argument(name)} is missing; expected it to be given")
     expected = fault["msg"].removeprefix("Input should be ").removeprefix("Input is not ")
-    return InvalidInput(f"{name} is {fault['input']!r}; expected {expected}")
+    return InvalidInput(f"{argument(name)} is {fault['input']!r}; expected {expected}")
 
 
 def number(
@@ -86,7 +86,7 @@ def number(
         if value is None:
             return None
         if isinstance(value, bool) or not isinstance(value, kind) or not holds(value):
-            raise InvalidInput(f"{name or info.field_name} is {value!r}; expected {expected}")
+            raise InvalidInput(f"{argument(name or str(info.field_name))} is {value!r}; expected {expected}")
         return plain(value)
 
     return BeforeValidator(check)
@@ -95,6 +95,7 @@ def number(
 Seed = Annotated[int, number(Integral, "a whole number from 0 on", lambda n: n >= 0, "seed")]
 Positive = Annotated[float, number(Real, "a number above 0", lambda x: 0 < x < float("inf"))]
 ImageWidth = Annotated[int, number(Integral, "a width in pixels", lambda n: n >= 1)]
+AngleDeg = Annotated[float, number(Real, "an angle above 0, at most 180", lambda x: 0 < x <= 180)]
 Text = Annotated[str, BeforeValidator(str)]
 """A name or a path."""
 
@@ -109,16 +110,24 @@ class RigRequest(Request):
 
     rig: Any = word(CALIBRATION, default=..., metavar="CALIB", takes_rest=True)
     """A `Rig`, or what `load_rig` takes."""
-    max_angle_deg: float | None = word("The image circle: the lenses show nothing beyond this angle.")
+    max_angle_deg: AngleDeg | None = word("The image circle: the lenses show nothing beyond this angle.")
     unit: str | None = word("What the calibration's translations are in, if not metres: mm, cm, in or ft.")
     cameras: Any = word(
         "Two cameras of a calibration that holds more, by its names.", metavar="LEFT,RIGHT", has_commas=True
     )
+    size_field: ClassVar[str | None] = None
+    """The field for the images' size, where there is one for a calibration that leaves it out."""
+
+    @property
+    def source_size(self) -> tuple[int, int] | None:
+        """The size that is stated for the images of the rig, pixels."""
+        return None if self.size_field is None else getattr(self, self.size_field)
 
 
 class SizedRigRequest(RigRequest):
     """A rig without images that would tell their size."""
 
+    size_field = "size"
     size: tuple[int, int] | None = word(
         "The images' size, where the calibration does not tell.", metavar="WxH", parse=size_in
     )

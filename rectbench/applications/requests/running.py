@@ -27,7 +27,7 @@ from rectbench.applications.requests.words import (
     share_in,
     whole_numbers_in,
 )
-from rectbench.errors import InvalidInput, UnknownName
+from rectbench.errors import InvalidInput, UnknownName, argument, in_python, spelled
 
 Jobs = Annotated[int, number(Integral, "a whole number from 1 on", lambda n: n >= 1)]
 
@@ -67,9 +67,12 @@ class RunRequest(Request):
         path = given.get("config")
         if path is None:
             return given
+        if not isinstance(path, str | Path):
+            raise InvalidInput(f"{argument('config')} is {path!r}; expected a path")
         settings, options = _in_file(Path(path), cls.model_fields.keys() - {"report", "config", "options"})
         try:
-            cls(report=given.get("report"), **settings)
+            with spelled(in_python):  # as the file spells its keys
+                cls(report=given.get("report"), **settings)
         except InvalidInput as error:
             raise InvalidInput(f"{path}: {error}") from None
         return {**settings, **given, "options": overlaid(options, option_sets_in(given.get("options")))}

@@ -9,7 +9,7 @@ from typing import Any
 
 from pydantic import ValidationInfo
 
-from rectbench.errors import InvalidInput
+from rectbench.errors import InvalidInput, argument
 
 OptionSets = dict[str, dict[str, Any]]
 """Options by method and name."""
@@ -22,9 +22,7 @@ def of_text(parse: Callable[[str], Any]) -> Callable[[Any], Any]:
 
 def listed(values: Any, info: ValidationInfo) -> Any:
     """Several values as a list; one that is none is refused."""
-    if isinstance(values, str) or (values is not None and not isinstance(values, Iterable)):
-        raise InvalidInput(f"{info.field_name} is {values!r}; expected a list")
-    return None if values is None else list(values)
+    return None if values is None else _several(values, str(info.field_name), "a list")
 
 
 def whole_numbers_in(words: Any, info: ValidationInfo) -> Any:
@@ -35,7 +33,7 @@ def whole_numbers_in(words: Any, info: ValidationInfo) -> Any:
     try:
         return [int(word) for word in values]
     except ValueError:
-        given = f"{info.field_name} are {','.join(map(str, values))}"
+        given = f"{argument(str(info.field_name))} is {','.join(map(str, values))}"
         raise InvalidInput(f"{given}; expected whole numbers such as 0,1,2") from None
 
 
@@ -43,27 +41,33 @@ def distances_in(words: Any) -> Any:
     """Words as distances in metres."""
     if words is None:
         return None
-    given = f"--depth-m is {','.join(map(str, words))}"
-    return _numbers(words, f"{given}; expected distances in metres such as 1,10,inf")
+    expected = "distances in metres such as 1,10,inf"
+    several = _several(words, "depth_m", expected)
+    return _numbers(several, f"{argument('depth_m')} is {','.join(map(str, several))}; expected {expected}")
 
 
 def tables_in(words: Any) -> Any:
     """Kinds of tables; of the word none none."""
-    return () if list(words) == ["none"] else tuple(words)
+    kinds = _several(words, "tables", "kinds of tables, or none")
+    return () if kinds == ["none"] else tuple(kinds)
 
 
 @of_text
 def angles_in(text: str) -> Any:
     """Two angles with an x between them, such as 100x80."""
-    return _numbers(_around_x(text), f"fov is {text}; expected two angles such as 100x80", 2)
+    return _numbers(
+        _around_x(text), f"{argument('fov_deg')} is {text}; expected two angles such as 100x80", 2
+    )
 
 
-@of_text
-def size_in(text: str) -> Any:
+def size_in(text: Any, info: ValidationInfo) -> Any:
     """(width, height) in whole pixels of a text such as 1280x800."""
-    sides = _numbers(_around_x(text), f"size is {text}; expected width and height such as 1280x800", 2)
+    if not isinstance(text, str):
+        return text
+    name = argument(str(info.field_name))
+    sides = _numbers(_around_x(text), f"{name} is {text}; expected width and height such as 1280x800", 2)
     if any(side != round(side) for side in sides):
-        raise InvalidInput(f"size is {text}; expected whole pixels")
+        raise InvalidInput(f"{name} is {text}; expected whole pixels")
     return [round(side) for side in sides]
 
 
@@ -72,7 +76,9 @@ def crop_in(text: str) -> Any:
     """The word valid, or the four numbers of a text such as 10,20,640,480."""
     if text == "valid":
         return text
-    return _numbers(text.split(","), f"crop is {text}; expected valid, or x,y,width,height in pixels", 4)
+    return _numbers(
+        text.split(","), f"{argument('crop')} is {text}; expected valid, or x,y,width,height in pixels", 4
+    )
 
 
 @of_text
@@ -80,12 +86,12 @@ def focal_in(text: str) -> Any:
     """The word source, or the number of a text."""
     if text == "source":
         return text
-    return _numbers([text], f"focal is {text}; expected a number of pixels, or source")[0]
+    return _numbers([text], f"{argument('focal_px')} is {text}; expected a number of pixels, or source")[0]
 
 
 def share_in(given: Any, info: ValidationInfo) -> float:
     """The share that a percentage such as 2 % means, or a number below 1 such as 0.02."""
-    refusal = f"{info.field_name} is {given!r}; expected a percentage above 0 such as 2%"
+    refusal = f"{argument(str(info.field_name))} is {given!r}; expected a percentage above 0 such as 2%"
     text = str(given).strip()
     if isinstance(given, bool):
         raise InvalidInput(refusal)
@@ -101,11 +107,11 @@ def option_sets_in(words: Mapping[str, Mapping[str, Any]] | Sequence[str] | None
     if words is None or isinstance(words, Mapping):
         return words or {}
     options: OptionSets = {}
-    for word in words:
+    for word in _several(words, "options", "texts such as method.name=value"):
         place, equals, value = word.partition("=")
         method, dot, name = place.strip().rpartition(".")
         if not (equals and dot and method and name):
-            raise InvalidInput(f"option is {word!r}; expected method.name=value")
+            raise InvalidInput(f"{argument('options')} is {word!r}; expected method.name=value")
         options.setdefault(method, {})[name.replace("-", "_")] = _value_in(value.strip())
     return options
 
@@ -114,7 +120,8 @@ def options_in(words: Mapping[str, Any] | Sequence[str] | None) -> Any:
     """Options of one method of words `name=value`."""
     if words is None or isinstance(words, Mapping):
         return words or {}
-    return option_sets_in([f"method.{word}" for word in words]).get("method", {})
+    several = _several(words, "options", "texts such as name=value")
+    return option_sets_in([f"method.{word}" for word in several]).get("method", {})
 
 
 def _value_in(text: str) -> Any:
@@ -123,6 +130,13 @@ def _value_in(text: str) -> Any:
         return tomllib.loads(f"value = {text}")["value"]
     except tomllib.TOMLDecodeError:
         return text
+
+
+def _several(values: Any, name: str, expected: str) -> list[Any]:
+    """Several values as a list; InvalidInput, by the argument's name, for a text or what is no list."""
+    if isinstance(values, str) or not isinstance(values, Iterable):
+        raise InvalidInput(f"{argument(name)} is {values!r}; expected {expected}")
+    return list(values)
 
 
 def _around_x(text: str) -> list[str]:

@@ -14,7 +14,7 @@ from rectbench.calibrations.documents.faults import errors_at, one_line, shown
 from rectbench.calibrations.documents.numbers import agreed_size, checked_size, finite_number, flat_numbers
 from rectbench.calibrations.documents.parsing import Malformed, parse
 from rectbench.calibrations.documents.telling import tell
-from rectbench.errors import InvalidInput, UnknownName
+from rectbench.errors import InvalidInput, UnknownName, argument
 from rectbench.rigs.rig import checked_rotation
 from rectbench.types import FloatArray
 
@@ -195,7 +195,7 @@ class Section:
     def _size_beside(self, key: str, expected: str, given: tuple[int, int] | None) -> tuple[int, int]:
         if given is None:
             raise InvalidInput(
-                f"{self.at(key)} is missing; expected {expected}, or `size=` given beside the file"
+                f"{self.at(key)} is missing; expected {expected}, or `{argument('size')}` beside the file"
             )
         return given
 

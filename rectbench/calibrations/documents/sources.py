@@ -12,8 +12,8 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from rectbench.calibrations.documents.entries import as_entries, forget
 from rectbench.calibrations.documents.archives import MARK, parse_archive
+from rectbench.calibrations.documents.entries import as_entries, forget
 from rectbench.calibrations.documents.faults import one_line, shown
 from rectbench.calibrations.documents.parsing import Malformed, parse
 from rectbench.calibrations.documents.sections import Section, parse_document

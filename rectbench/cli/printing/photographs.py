@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from rectbench.applications.photographs.rectified import RectifiedImages
     from rectbench.matching import PoseEstimate
     from rectbench.metrics import Uncertainty
+    from rectbench.pairs.finding.image_circle import ImageCircle
     from rectbench.rigs import Rig, RigCovariance
 
 
@@ -38,9 +39,16 @@ _COSTS: tuple[tuple[str, Callable[[Mapping[str, float]], str]], ...] = (
 """What a frame costs, by the numbers of `frame_costs`."""
 
 
+def show_circle(circle: ImageCircle | None) -> None:
+    """What the lenses were held to, where masks or images said so and no calibration."""
+    if circle is not None:
+        console().print(Text(f"image circle: {circle.told}"), soft_wrap=True)
+
+
 def show_rectified(made: RectifiedImages) -> None:
     """What a rectification costs, how good its rows are, what was left out, and where the files are."""
     screen = console()
+    show_circle(made.circle)
     if made.choice is not None:
         _show_choice(screen, made.choice)
     frames = {"this frame": made.costs}
@@ -65,7 +73,7 @@ def show_rectified(made: RectifiedImages) -> None:
             screen.print(Text(f"{result.pair.name}: {result.note}", style="dim"), soft_wrap=True)
     if made.warning:
         screen.print(Text(f"warning: {made.warning}", style="yellow"), soft_wrap=True)
-    for file in made.files if len(made.pairs) == 1 else made.files[-1:]:
+    for file in made.files[-1:] if len(made.pairs) > 1 else made.files:
         print(file)
 
 

@@ -13,6 +13,7 @@ from rich.text import Text
 
 from rectbench.cli.printing.screen import console, plain_table
 from rectbench.metrics.view import across_key
+from rectbench.reporting.failures import told_failures
 from rectbench.reporting.footnotes import with_footnotes
 from rectbench.reporting.tables.findings import findings
 from rectbench.reporting.tables.main_tables import INTERVAL, main_tables
@@ -51,9 +52,8 @@ def show_summary(folder: Path) -> None:
         for note in summary.notes:
             screen.print(Text(note))
         screen.print()
-    for failure in found.failures:
-        cell = f"{failure.method} on {failure.scene}/{failure.rig}/{failure.motion}/{failure.pose}"
-        screen.print(Text(f"{failure.status}: {cell}: {failure.reason}", style="yellow"))
+    for line in told_failures(found):
+        screen.print(Text(line, style="yellow"))
     screen.print(f"{len(found.results)} cells; page: {folder / 'index.html'}", soft_wrap=True)
 
 

@@ -17,7 +17,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from rectbench.errors import RectbenchError, Unavailable
+from rectbench.errors import RectbenchError, Unavailable, argument
 from rectbench.experiments.execution.cells import DESK, cell_inputs, run_cell
 from rectbench.experiments.execution.outcomes import Outcome
 from rectbench.experiments.execution.worker import Limits, restrict
@@ -39,7 +39,9 @@ def run_on_cluster(
     try:
         from distributed import Client, as_completed
     except ImportError:
-        raise Unavailable("--dask needs the package distributed; pip install 'rectbench[dask]'") from None
+        raise Unavailable(
+            f"{argument('dask')} needs the package distributed; pip install 'rectbench[dask]'"
+        ) from None
     try:
         client = Client(address, timeout=CONNECT_TIMEOUT_S, set_as_default=False)
     except (OSError, ValueError) as error:

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, replace
 
-from rectbench.errors import InvalidInput
+from rectbench.errors import InvalidInput, argument
 from rectbench.experiments.execution.cells import CELLS, cell_inputs, keep, run_cell, run_pair, stored_outcome
 from rectbench.experiments.execution.outcomes import Outcome
 from rectbench.experiments.execution.pool import Job, Workers
@@ -81,7 +81,7 @@ def checked_jobs(jobs: int | None) -> int:
     if jobs is None:
         return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     if isinstance(jobs, bool) or not isinstance(jobs, int) or jobs < 1:
-        raise InvalidInput(f"jobs is {jobs!r}; expected a whole number from 1 on")
+        raise InvalidInput(f"{argument('jobs')} is {jobs!r}; expected a whole number from 1 on")
     return jobs
 
 

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rectbench.cameras.projection import as_points
-from rectbench.errors import InvalidInput, InvalidResult, Unavailable
+from rectbench.errors import InvalidInput, InvalidResult, Unavailable, argument
 from rectbench.images.reading import grey8
 from rectbench.matching.dense.matchers import MATCHERS, Image, Matcher, matcher_named
 from rectbench.types import BoolArray, FloatArray
@@ -124,7 +124,7 @@ def dense_disparity(
     match = matcher_named(matcher)
     for name, number in (("pixels", pixels), ("nearest_baselines", nearest_baselines)):
         if not (isinstance(number, int | float | np.number) and 0 < number < math.inf):
-            raise InvalidInput(f"{name} is {number!r}; expected a number above 0")
+            raise InvalidInput(f"{argument(name)} is {number!r}; expected a number above 0")
     span = shared_disparities(rect, nearest_baselines)
     factor = _working_factor(rect, span, pixels)
     images = [rgb8(image, side) for image, side in ((left, "left"), (right, "right"))]

@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rectbench.cameras.projection import as_points
-from rectbench.errors import InvalidInput
+from rectbench.errors import InvalidInput, argument
 from rectbench.metrics.analyses.propagation import GROUPS, Propagation
 from rectbench.rigs import Rig
 from rectbench.rigs.covariance import RigCovariance
@@ -147,7 +147,9 @@ def uncertainty(
     covariance.refuse_unknown(rig)
     depths = _checked_depths(depth_m, rig)
     if not 0 <= matching_px < math.inf:
-        raise InvalidInput(f"matching_px is {matching_px!r}; expected a number of pixels from 0 on")
+        raise InvalidInput(
+            f"{argument('matching_px')} is {matching_px!r}; expected a number of pixels from 0 on"
+        )
     grid = dense_pixels(rig.left) if pixels is None else as_points(pixels, 2, "pixels")
     flat = grid.reshape(-1, 2)
     propagation = Propagation(rect, rig, covariance)
@@ -205,7 +207,9 @@ def _checked_depths(depth_m: float | Sequence[float] | None, rig: Rig) -> tuple[
         [b * rig.baseline_m for b in DEPTHS_IN_BASELINES] if depth_m is None else np.ravel(depth_m).tolist()
     )
     if not given or not all(isinstance(d, int | float) and d > 0 for d in given):
-        raise InvalidInput(f"depth_m is {depth_m!r}; expected distances above 0 in metres, or infinity")
+        raise InvalidInput(
+            f"{argument('depth_m')} is {depth_m!r}; expected distances above 0 in metres, or infinity"
+        )
     return tuple(map(float, given))
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
@@ -10,17 +9,14 @@ from pathlib import Path
 
 from rectbench.calibrations import CamerasNotChosen, holds_many, is_calibration, load_rig
 from rectbench.errors import InvalidInput
-from rectbench.images.reading import Grey, grey8, read_image
-from rectbench.pairs.finding.image_circle import angle_of_mask_deg, angle_of_rim_deg
+from rectbench.pairs.finding.image_circle import grey_of, image_circle
 from rectbench.pairs.finding.manifest import Manifest
-from rectbench.pairs.finding.names import FilePair, LeftOut, camera_numbers, paired_files
+from rectbench.pairs.finding.names import FilePair, LeftOut, camera_numbers, home_of, paired_files
 from rectbench.rigs import Rig
 
 SUFFIXES = frozenset({".yaml", ".yml", ".xml", ".json", ".txt", ".bin", ".cameramodel", ".cfg", ".conf"})
 TOLD_SUFFIXES = SUFFIXES - {".txt", ".bin"}
 """Those of files that look like a calibration; others are notes as often."""
-RIM_IMAGES = 8
-"""Pairs of a rig that the rim of its lenses is looked for in."""
 UNSTATED_UNIT = "mm"
 """What a baseline is in that is too long for metres and has no unit; no number of a report depends on it."""
 
@@ -51,11 +47,6 @@ class Calibration:
         rig = load_rig(files, size=self.size, unit=self.unit, cameras=self.cameras)
         rig = replace(rig, name=self.name)
         return rig if self.max_angle_deg is None else rig.within(self.max_angle_deg)
-
-
-def home_of(files: Sequence[Path]) -> Path:
-    """The folder that holds all the files, in itself or below."""
-    return Path(os.path.commonpath([file.parent for file in files]))
 
 
 def stated_calibrations(manifest: Manifest, pairs: Sequence[FilePair]) -> list[Calibration]:
@@ -189,53 +180,16 @@ def with_cameras_of(one: Calibration, pair: FilePair) -> Calibration | None:
 
 
 def within_circle(one: Calibration, pairs: Sequence[FilePair], masks: Sequence[Path]) -> Calibration:
-    """The calibration with the image circle that a mask of the images' size, or their black rim, shows.
+    """The calibration with the image circle that masks beside or below it, or its pairs, show.
 
     One that is stated stands. `pairs` are the calibration's own.
     """
-    rig = one.rig()
-    if rig.left.max_angle_deg is not None or rig.right.max_angle_deg is not None:
+    circle = image_circle(one.rig(), pairs, [mask for mask in masks if mask.is_relative_to(one.home)])
+    if circle is None:
         return one
-    for mask in masks:
-        if mask.is_relative_to(one.home) and (shown := _fitting(mask, mask, rig)):
-            ends = [angle_of_mask_deg(c, m) for c, m in zip((rig.left, rig.right), shown, strict=True)]
-            if circle := _smaller(ends):
-                return _within(one, circle, f"by {mask.name}")
-    images = [shown for pair in pairs[:RIM_IMAGES] if (shown := _fitting(pair.left, pair.right, rig))]
-    if images:
-        sides = zip((rig.left, rig.right), zip(*images, strict=True), strict=True)
-        if circle := _smaller([angle_of_rim_deg(camera, shown) for camera, shown in sides]):
-            return _within(one, circle, "by the black rim of its images")
-    return one
-
-
-def _smaller(ends: Sequence[float | None]) -> float | None:
-    """The smaller of two angles, if both lenses have one."""
-    known = [end for end in ends if end is not None]
-    return min(known) if len(known) == len(ends) else None
-
-
-def _within(one: Calibration, angle_deg: float, evidence: str) -> Calibration:
-    told = f"its lenses are taken to show nothing beyond {angle_deg:.0f}° from their axes, {evidence}"
-    return replace(one, max_angle_deg=angle_deg, remarks=(*one.remarks, told))
-
-
-def _fitting(left: Path, right: Path, rig: Rig) -> tuple[Grey, Grey] | None:
-    """Both images, if they can be read and have their cameras' sizes."""
-    images = _grey(left), _grey(right)
-    if images[0] is None or images[1] is None:
-        return None
-    fits = (images[0].shape[::-1], images[1].shape[::-1]) == (rig.left.size, rig.right.size)
-    return (images[0], images[1]) if fits else None
+    return replace(one, max_angle_deg=circle.angle_deg, remarks=(*one.remarks, circle.told))
 
 
 def _size(image: Path) -> tuple[int, int] | None:
-    pixels = _grey(image)
+    pixels = grey_of(image)
     return None if pixels is None else (pixels.shape[1], pixels.shape[0])
-
-
-def _grey(path: Path) -> Grey | None:
-    try:
-        return grey8(read_image(path))
-    except InvalidInput:
-        return None

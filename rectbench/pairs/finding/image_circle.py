@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from functools import reduce
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rectbench.cameras import Camera
-from rectbench.images.reading import Grey
+from rectbench.errors import InvalidInput
+from rectbench.images.reading import Grey, grey8, read_image
+from rectbench.pairs.finding.names import FilePair, home_of, paired_files
+from rectbench.rigs import Rig
 from rectbench.types import FloatArray
 
 RING_DEG = 1.0
@@ -25,6 +30,82 @@ LEAST_CONTRAST = 24.0
 """Grey levels between the picture and its rim."""
 FADED = 0.25
 """Of that contrast, what a ring must have to belong to the picture."""
+RIM_IMAGES = 8
+"""Pairs of a rig that the rim of its lenses is looked for in."""
+
+
+@dataclass(frozen=True)
+class ImageCircle:
+    """How far from their axes both lenses of a rig show anything, and what says so."""
+
+    angle_deg: float
+    evidence: str
+    masks: tuple[Path, ...] = ()
+    """The files that it was read from, where these are masks."""
+
+    @property
+    def told(self) -> str:
+        """What was taken, in words."""
+        return (
+            f"the lenses are taken to show nothing beyond {self.angle_deg:.0f}° from their axes, "
+            f"{self.evidence}"
+        )
+
+
+def image_circle(rig: Rig, pairs: Sequence[FilePair], masks: Iterable[Path]) -> ImageCircle | None:
+    """The image circle that a mask of the images' size, or else their black rim, shows.
+
+    None where neither does, and where one is stated, which stands. The smaller of both lenses' counts.
+    """
+    if rig.left.max_angle_deg is not None or rig.right.max_angle_deg is not None:
+        return None
+    for files in _by_side(masks):
+        if shown := _fitting(files, rig):
+            ends = [angle_of_mask_deg(c, m) for c, m in zip((rig.left, rig.right), shown, strict=True)]
+            used = tuple(dict.fromkeys(files))
+            if angle_deg := _smaller(ends):
+                return ImageCircle(angle_deg, f"by {' and '.join(file.name for file in used)}", used)
+    images = [shown for pair in pairs[:RIM_IMAGES] if (shown := _fitting(pair.files, rig))]
+    if images:
+        sides = zip((rig.left, rig.right), zip(*images, strict=True), strict=True)
+        if angle_deg := _smaller([angle_of_rim_deg(camera, shown) for camera, shown in sides]):
+            return ImageCircle(angle_deg, "by the black rim of its images")
+    return None
+
+
+def _by_side(masks: Iterable[Path]) -> Iterator[tuple[Path, Path]]:
+    """The left and the right lens's mask, where their names tell them apart; else one for both."""
+    files = [file for file in masks if not _is_of_rectified(file)]
+    pairs = paired_files(files, home_of(files)).pairs if files else ()
+    yield from (pair.files for pair in pairs)
+    yield from ((file, file) for file in files if not any(file in pair.files for pair in pairs))
+
+
+def _is_of_rectified(mask: Path) -> bool:
+    """Whether a mask shows where a rectified image is valid: `rectify` leaves it beside its description."""
+    return mask.stem in ("left_mask", "right_mask") and (mask.parent / "rectified.yaml").is_file()
+
+
+def _smaller(ends: Sequence[float | None]) -> float | None:
+    """The smaller of two angles, if both lenses have one."""
+    known = [end for end in ends if end is not None]
+    return min(known) if len(known) == len(ends) else None
+
+
+def _fitting(files: tuple[Path, Path], rig: Rig) -> tuple[Grey, Grey] | None:
+    """Both images, if they can be read and have their cameras' sizes."""
+    left, right = map(grey_of, files)
+    if left is None or right is None:
+        return None
+    return (left, right) if (left.shape[::-1], right.shape[::-1]) == (rig.left.size, rig.right.size) else None
+
+
+def grey_of(path: Path) -> Grey | None:
+    """An image file in 8 bits of grey; None where it is none."""
+    try:
+        return grey8(read_image(path))
+    except InvalidInput:
+        return None
 
 
 def angle_of_mask_deg(camera: Camera, mask: Grey) -> float | None:

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from glob import glob, has_magic
 from pathlib import Path
 
 from rectbench.errors import InvalidInput
 from rectbench.images.reading import IMAGE_SUFFIXES
-from rectbench.pairs.finding.calibrations import home_of
-from rectbench.pairs.finding.names import FilePair, Pairing, paired_folders
+from rectbench.pairs.finding.names import FilePair, Pairing, home_of, is_mask, paired_folders
 
 
 def image_pairs(left: str, right: str) -> Pairing:
@@ -33,6 +32,16 @@ def image_pairs(left: str, right: str) -> Pairing:
     return replace(pairing, pairs=_distinctly_named(pairing.pairs))
 
 
+def masks_beside(pairs: Sequence[FilePair], calibration: Iterable[Path]) -> list[Path]:
+    """The mask images in the folders of the pairs' images and of the calibration's files."""
+    folders = {file.resolve().parent for pair in pairs for file in pair.files}
+    for place in map(Path.resolve, calibration):
+        if place.exists():  # a built-in rig's name is no place
+            folders.add(place if place.is_dir() else place.parent)
+    files = (file for folder in folders if folder.is_dir() for file in folder.iterdir())
+    return sorted(file for file in files if file.suffix.lower() in IMAGE_SUFFIXES and is_mask(file))
+
+
 def _is_many(place: str) -> bool:
     return Path(place).is_dir() or (has_magic(place) and not Path(place).exists())
 
@@ -45,6 +54,7 @@ def _files(place: str, side: str) -> list[Path]:
     else:
         found = map(Path, glob(place, recursive=True))  # noqa: PTH207  a pattern may be absolute
         files = [file for file in found if file.is_file()]
+    files = [file for file in files if not is_mask(file)]
     if not files:
         raise InvalidInput(
             f"{place}: holds no {side} image; expected a file, a folder of images or a pattern"

@@ -8,9 +8,10 @@ name, in that of a folder above it, or in both. What could have two partners has
 from __future__ import annotations
 
 import itertools
+import os
 import re
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -27,6 +28,8 @@ IMAGES = frozenset({"image", "img", "im", "view"})
 """What is counted where a number follows: cameras rather than images, where a name has both."""
 LAST_LEFT = 2
 """The largest number of a left camera: KITTI's colour cameras are 2 and 3."""
+MASK = "mask"
+"""A word in the name of an image that tells where others show anything."""
 MOST_SIDES = 6
 """Words for a side in one path that are looked at."""
 
@@ -124,6 +127,16 @@ def paired_folders(
             for file in sorted(set(files))
         }
     )
+
+
+def home_of(files: Sequence[Path]) -> Path:
+    """The folder that holds all the files, in itself or below."""
+    return Path(os.path.commonpath([file.parent for file in files]))
+
+
+def is_mask(image: Path) -> bool:
+    """Whether an image is a mask by its name, no photograph."""
+    return MASK in words_in(image.stem)
 
 
 def camera_numbers(pair: FilePair) -> tuple[int, int] | None:

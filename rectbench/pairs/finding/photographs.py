@@ -15,19 +15,17 @@ from rectbench.images.reading import IMAGE_SUFFIXES
 from rectbench.pairs.finding.calibrations import (
     Calibration,
     found_calibrations,
-    home_of,
     stated_calibrations,
     with_cameras_of,
     within_circle,
 )
 from rectbench.pairs.finding.manifest import MANIFEST, read_manifest
-from rectbench.pairs.finding.names import FilePair, LeftOut, paired_files, words_in
+from rectbench.pairs.finding.names import FilePair, LeftOut, home_of, is_mask, paired_files, words_in
 
 NO_PHOTOGRAPHS = frozenset(
     {"disp", "disparity", "depth", "flow", "seg", "semantic", "label", "labels", "nocc", "occ"}
 )
 """Words in the names of what data sets have beside photographs."""
-MASK = "mask"
 UNREADABLE = "not an image that OpenCV can read"
 
 
@@ -122,7 +120,7 @@ def _images(files: Iterable[Path]) -> tuple[list[Path], list[Path], list[LeftOut
         words = set(words_in(file.stem))
         if not cv2.haveImageReader(str(file)):
             left_out.append(LeftOut(file, UNREADABLE))
-        elif MASK in words:
+        elif is_mask(file):
             masks.append(file)
         elif kind := words & NO_PHOTOGRAPHS:
             left_out.append(LeftOut(file, f"no photograph, by the word '{min(kind)}' in its name"))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from rectbench.reporting.failures import failures_of
 from rectbench.reporting.names import one_line, pair_labels
 from rectbench.reporting.tables.captions import counted
 from rectbench.reporting.tables.numbers import MISSING
@@ -91,22 +92,22 @@ def _left_out_table(found: FoundPhotographs) -> Table:
 
 
 def failures_table(run: Run) -> Table:
-    """Every cell without a measurement, its status and the reason given."""
+    """The cells without a measurement, their status, and the reason: once where several share it."""
     names: tuple[str, ...] = ("scene", "rig", "motion", "pose", "method", "seed", "status", "reason")
     if any(r.group for r in run.results):
         names = ("group", *names)
     rows = tuple(
         tuple(
-            Entry(str(value) or MISSING, value, failed=name == "status")
-            for name, value in ((name, getattr(r, name)) for name in names)
+            Entry(value or MISSING, value, failed=name == "status")
+            for name, value in ((name, getattr(failure, name)) for name in names)
         )
-        for r in run.failures
+        for failure in failures_of(run)
     )
     return Table(
         kind="failures",
         name="failures",
         title="Cells without a measurement",
-        caption=f"{len(rows)} of {counted(len(run.results), 'cell')}.",
-        headings=tuple(Heading(n, n, numeric=n == "seed", wraps=n == "reason") for n in names),
+        caption=f"{len(run.failures)} of {counted(len(run.results), 'cell')}.",
+        headings=tuple(Heading(n, n, wraps=n in ("method", "reason")) for n in names),
         sections=(Section("", rows),),
     )

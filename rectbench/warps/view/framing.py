@@ -13,7 +13,7 @@ from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
-from rectbench.errors import InvalidInput, Unsupported
+from rectbench.errors import InvalidInput, Unsupported, argument
 from rectbench.types import FloatArray
 from rectbench.warps.frame import angles, centre_resolution_px, rectifying_rotations
 from rectbench.warps.rectification import LARGEST_SIDE_PX, Rectification
@@ -87,21 +87,23 @@ class Framing:
     def __post_init__(self) -> None:
         stated = [name for name in ("crop", "fov_deg", "coverage") if getattr(self, name) is not None]
         if len(stated) > 1:
-            raise InvalidInput(f"{stated[0]} and {stated[1]} both say what is shown; expected one of them")
+            raise InvalidInput(f"{_both(*stated[:2])} say what is shown; expected one of them")
         if self.pixels is not None and self.size is not None:
-            raise InvalidInput("size and pixels both say how large the image is; expected one of them")
+            raise InvalidInput(f"{_both('size', 'pixels')} say how large the image is; expected one of them")
         if self.crop != "valid":
             _check_numbers("crop", self.crop, 4, "valid, or left, top, width, height in pixels")
         _check_numbers("fov_deg", self.fov_deg, 2, "two angles in degrees, between 0 and 360", 0, 360)
         sides = f"width and height from 1 to {LARGEST_SIDE_PX} px"
         _check_numbers("size", self.size, 2, sides, 0, LARGEST_SIDE_PX + 1)
         if self.size is not None and any(side != int(side) for side in self.size):
-            raise InvalidInput(f"size is {self.size!r}; expected whole pixels")
+            raise InvalidInput(f"{argument('size')} is {self.size!r}; expected whole pixels")
         if self.focal_px != "source":
             _check_numbers("focal_px", self.focal_px, 1, "a number of pixels above 0, or source", 0)
         _check_numbers("pixels", self.pixels, 1, "a number of pixels above 1", 1)
         if self.coverage is not None and not (_is_number(self.coverage) and 0 < self.coverage <= 1):
-            raise InvalidInput(f"coverage is {self.coverage!r}; expected a share above 0, at most 1")
+            raise InvalidInput(
+                f"{argument('coverage')} is {self.coverage!r}; expected a share above 0, at most 1"
+            )
 
     @property
     def is_resized(self) -> bool:
@@ -130,7 +132,8 @@ def framed(rect: Rectification, framing: Framing) -> Rectification:
         return rect
     window = _window(rect, framing)
     if not (np.isfinite(window).all() and (window.extent > 0).all()):
-        raise Unsupported("nothing is left in that frame; expected a larger crop, fov_deg or coverage")
+        larger = f"{argument('crop')}, {argument('fov_deg')} or {argument('coverage')}"
+        raise Unsupported(f"nothing is left in that frame; expected a larger {larger}")
     if framing.crop == "valid" and framing.is_resized:
         # Samples beyond the centres of the outermost valid pixels would not be valid themselves.
         window = Window(*(np.array(window) + VALID_INSET_PX * np.array([1, 1, -1, -1])))
@@ -201,7 +204,9 @@ def _window(rect: Rectification, framing: Framing) -> Window:
 def _valid_window(rect: Rectification) -> Window:
     box = largest_rectangle(rect.valid("left") & rect.valid("right"))
     if not box.area:
-        raise Unsupported("the two rectified images have no valid pixel in common; expected another crop")
+        raise Unsupported(
+            f"the two rectified images have no valid pixel in common; expected another {argument('crop')}"
+        )
     return Window(*(edge - 0.5 for edge in box))
 
 
@@ -223,7 +228,9 @@ def _window_of_view(rect: Rectification, across: float, down: float) -> Window:
         pixels, shown = warp.target.project(rays @ R_warp_epi.T)
         if not shown.all():
             view = f"{math.degrees(across):g}x{math.degrees(down):g}°"
-            raise Unsupported(f"the method's image does not reach {view}; expected a smaller fov_deg")
+            raise Unsupported(
+                f"the method's image does not reach {view}; expected a smaller {argument('fov_deg')}"
+            )
         edges.append([pixels[0, 0], pixels[2, 1], pixels[1, 0], pixels[3, 1]])
     (left, top), (right, bottom) = np.min(edges, axis=0)[:2], np.max(edges, axis=0)[2:]
     return Window(float(left), float(top), float(right), float(bottom))
@@ -240,8 +247,9 @@ def _covering_window(rect: Rectification, share: float) -> Window:
     rim = rim[np.isfinite(rim).all(axis=1)]
     pixels, weights = pixels[exist], weights[exist]
     if weights.sum() < share * (1 - 1e-9):
+        kept_most = f"{weights.sum():.1%} of the source pixels"
         raise Unsupported(
-            f"the method's image can keep {weights.sum():.1%} of the source pixels; expected a coverage below"
+            f"the method's image can keep {kept_most}; expected {argument('coverage')} below that"
         )
 
     def window(cut: float) -> Window:
@@ -269,7 +277,8 @@ def _checked_size(size: tuple[float, ...], whole: Callable[[float], int]) -> tup
     if max(width, height) > LARGEST_SIDE_PX or width * height > LARGEST_PIXELS:
         raise InvalidInput(
             f"the rectified image would be {width:.0f}x{height:.0f} px; expected at most {LARGEST_SIDE_PX} a "
-            f"side and {LARGEST_PIXELS / 1e6:.0f} megapixels: state a budget of pixels, or show less"
+            f"side and {LARGEST_PIXELS / 1e6:.0f} megapixels: state a budget of {argument('pixels')}, or "
+            "show less"
         )
     return int(width), int(height)
 
@@ -277,6 +286,10 @@ def _checked_size(size: tuple[float, ...], whole: Callable[[float], int]) -> tup
 def _is_number(value: Any) -> bool:
     is_real = isinstance(value, int | float | np.number) and not isinstance(value, bool)
     return is_real and math.isfinite(value)
+
+
+def _both(one: str, other: str) -> str:
+    return f"{argument(one)} and {argument(other)} both"
 
 
 def _check_numbers(
@@ -287,4 +300,4 @@ def _check_numbers(
         return
     values = list(value) if isinstance(value, tuple | list) else [value]
     if len(values) != count or not all(_is_number(v) and above < v < below for v in values):
-        raise InvalidInput(f"{name} is {value!r}; expected {expected}")
+        raise InvalidInput(f"{argument(name)} is {value!r}; expected {expected}")

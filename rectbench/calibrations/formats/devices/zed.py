@@ -26,7 +26,7 @@ from rectbench.calibrations.documents import Section, Source, one_line
 from rectbench.calibrations.formats.toolboxes.opencv import opencv_camera
 from rectbench.calibrations.pose_file import read_rotation
 from rectbench.cameras import Camera
-from rectbench.errors import InvalidInput
+from rectbench.errors import InvalidInput, argument
 from rectbench.rigs.rig import Rig
 
 SIZES = {
@@ -84,7 +84,8 @@ def _resolution(file: Section, given: Given) -> str:
     if len(fitting) != 1:
         sizes = " or ".join("{}x{}".format(*SIZES[name]) for name in known)
         found = f"holds no cameras of {given.size}" if given.size else f"holds {len(known)} resolutions"
-        raise InvalidInput(f"{file.file}: {found}; expected `size=` {sizes or 'of one'} beside the file")
+        expected = f"`{argument('size')}` {sizes or 'of one'} beside the file"
+        raise InvalidInput(f"{file.file}: {found}; expected {expected}")
     return fitting[0]
 
 

@@ -61,7 +61,7 @@ from rectbench.calibrations.formats.toolboxes.opencv_keys import (
 from rectbench.calibrations.layouts import layout_of
 from rectbench.calibrations.rectified_pair import matrix_of
 from rectbench.cameras import Camera
-from rectbench.errors import InvalidInput
+from rectbench.errors import InvalidInput, argument
 from rectbench.rigs.file_formats import Writing
 from rectbench.rigs.rig import Rig
 from rectbench.types import FloatArray
@@ -233,7 +233,8 @@ def _read_size(files: Files, number: int, given: tuple[int, int] | None) -> tupl
         return document.sides(key.replace(*SIDES[::-1]), key.replace(*SIDES), given)
     if given is None:
         raise InvalidInput(
-            f"{files}: image_width is missing; expected it and image_height, or `size=` beside the file"
+            f"{files}: image_width is missing; expected it and image_height, or `{argument('size')}` beside "
+            "the file"
         )
     return given
 
