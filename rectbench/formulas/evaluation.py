@@ -91,7 +91,8 @@ def _by_numpy(
     outputs = np.empty((len(points), len(values)))
     for i, value in enumerate(values):
         outputs[:, i] = value
-    ok = ok & np.isfinite(points).all(axis=-1) & np.isfinite(outputs).all(axis=-1)
+    for numbers in (*columns, *values):
+        ok = ok & np.isfinite(numbers)
     outputs[~ok] = np.nan
     return outputs, ok
 

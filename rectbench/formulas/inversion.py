@@ -110,8 +110,10 @@ def inverse(
         slope = formula(plain, *variables(x), xp).partials[0]
         return (target - formula(c, constant(x), xp)).chain(x, 1.0 / slope)
 
+    jets, constants = JetNamespace(xp), as_jets(c)
+
     def value_and_slope(x: Any) -> tuple[Any, Any]:
-        jet = formula(as_jets(c), *variables(x), JetNamespace(xp))
+        jet = formula(constants, *variables(x), jets)
         return jet.value, jet.partials[0]
 
     reached, start = xp.minimum(target, most), xp.minimum(start, high)
