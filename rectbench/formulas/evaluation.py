@@ -14,7 +14,7 @@ from rectbench import llvm
 from rectbench.formulas.namespaces import NUMPY, drjit_namespace, is_number
 from rectbench.types import BoolArray, Constants, FloatArray
 
-KERNEL_THRESHOLD = 1_000
+KERNEL_THRESHOLD = 2_000
 """Points from which a compiled kernel is used. It beats NumPy from some hundreds on, its launch included;
 but each formula of each kind of lens is first compiled, once a machine, which takes as long as many calls."""
 
