@@ -14,8 +14,9 @@ from rectbench import llvm
 from rectbench.formulas.namespaces import NUMPY, drjit_namespace, is_number
 from rectbench.types import BoolArray, Constants, FloatArray
 
-KERNEL_THRESHOLD = 20_000
-"""Points from which a compiled kernel beats NumPy, its launch included."""
+KERNEL_THRESHOLD = 2_000
+"""Points from which a compiled kernel is used. It beats NumPy from some hundreds on, its launch included;
+but each formula of each kind of lens is first compiled, once a machine, which takes as long as many calls."""
 
 
 def opaque(tree: Any) -> Any:
@@ -90,7 +91,8 @@ def _by_numpy(
     outputs = np.empty((len(points), len(values)))
     for i, value in enumerate(values):
         outputs[:, i] = value
-    ok = ok & np.isfinite(points).all(axis=-1) & np.isfinite(outputs).all(axis=-1)
+    for numbers in (*columns, *values):
+        ok = ok & np.isfinite(numbers)
     outputs[~ok] = np.nan
     return outputs, ok
 

@@ -25,9 +25,10 @@ def repeat_until_settled(
     step: Callable[..., tuple[Any, ...]],
     unsettled: Callable[..., Any],
     state: tuple[Any, ...],
+    given: tuple[Any, ...],
     xp: Formulas,
 ) -> tuple[Any, ...]:
-    """Repeat ``state = step(*state)`` on each element for as long as ``unsettled(*state)`` holds there.
+    """Repeat ``state = step(*state, *given)`` on each element while ``unsettled(*state)`` holds there.
 
     An element stops by itself, so its digits do not depend on its neighbours. In a kernel this is a
     real loop, which compiles faster and ends sooner than unrolled steps.
@@ -35,11 +36,24 @@ def repeat_until_settled(
     if xp is not NUMPY:
         import drjit as dr
 
-        return dr.while_loop(state, unsettled, step)
-    while np.any(active := unsettled(*state)):
-        following = step(*state)
-        state = tuple(np.where(active, new, old) for new, old in zip(following, state, strict=True))
-    return state
+        return dr.while_loop(state, unsettled, lambda *state: step(*state, *given))
+    arrays = np.broadcast_arrays(*state, *given)
+    shape, flat = arrays[0].shape, [np.array(values, dtype=float).ravel() for values in arrays]
+    found, moving, given = flat[: len(state)], tuple(flat[: len(state)]), tuple(flat[len(state) :])
+    place = np.arange(found[0].size)
+    while place.size:
+        active = unsettled(*moving)
+        if not active.all():  # a few elements take ten times the steps of the others, which go on alone
+            for values, ended in zip(found, moving, strict=True):
+                values[place] = ended
+            still = np.flatnonzero(active)
+            place, moving, given = (
+                place[still],
+                tuple(values[still] for values in moving),
+                tuple(values[still] for values in given),
+            )
+        moving = step(*moving, *given)
+    return tuple(values.reshape(shape) for values in found)
 
 
 def invert_monotone(
@@ -53,7 +67,7 @@ def invert_monotone(
     the ends gives the nearer end.
     """
 
-    def step(x: Any, low: Any, high: Any, last: Any, count: Any) -> tuple[Any, ...]:
+    def step(x: Any, low: Any, high: Any, last: Any, count: Any, target: Any) -> tuple[Any, ...]:
         value, slope = function(x)
         miss = target - value
         high = xp.where(miss < 0.0, x, high)
@@ -71,7 +85,7 @@ def invert_monotone(
     zero = 0.0 * target
     low, high = low + zero, high + zero
     state = (start + zero, low, high, 4.0 * (high - low), zero)
-    return repeat_until_settled(step, unsettled, state, xp)[0]
+    return repeat_until_settled(step, unsettled, state, (target,), xp)[0]
 
 
 def inverse(
@@ -96,8 +110,10 @@ def inverse(
         slope = formula(plain, *variables(x), xp).partials[0]
         return (target - formula(c, constant(x), xp)).chain(x, 1.0 / slope)
 
+    jets, constants = JetNamespace(xp), as_jets(c)
+
     def value_and_slope(x: Any) -> tuple[Any, Any]:
-        jet = formula(as_jets(c), *variables(x), JetNamespace(xp))
+        jet = formula(constants, *variables(x), jets)
         return jet.value, jet.partials[0]
 
     reached, start = xp.minimum(target, most), xp.minimum(start, high)
@@ -127,7 +143,7 @@ def invert_in_disk(
         shrink = radius / xp.sqrt(square)
         return xp.where(inside, a, shrink * a), xp.where(inside, b, shrink * b)
 
-    def step(a: Any, b: Any, da: Any, db: Any, miss: Any, count: Any) -> tuple[Any, ...]:
+    def step(a: Any, b: Any, da: Any, db: Any, miss: Any, count: Any, u: Any, v: Any) -> tuple[Any, ...]:
         a_new, b_new = within(a + da, b + db)
         p, q = formula(constants, *variables(a_new, b_new), jets)
         (pa, pb), (qa, qb) = p.partials, q.partials
@@ -152,5 +168,5 @@ def invert_in_disk(
     zero = 0.0 * size
     steps_taken = xp.where(size <= reach * reach, zero, zero + MOST_STEPS)
     state = (*within(u, v), zero, zero, zero + math.inf, steps_taken)
-    a, b, _, _, miss, _ = repeat_until_settled(step, unsettled, state, xp)
+    a, b, _, _, miss, _ = repeat_until_settled(step, unsettled, state, (u, v), xp)
     return a, b, miss <= PIXEL_SLACK * PIXEL_SLACK * xp.maximum(1.0, size)

@@ -8,12 +8,10 @@ import numpy as np
 
 from rectbench.plugins.metric import Case, Column, Metric, Tolerance
 from rectbench.rigs import Rig
-from rectbench.scored import dense_pixels
+from rectbench.scored import SeenView
 from rectbench.types import FloatArray
 from rectbench.warps import Rectification, Warp, rectifying_rotations
 from rectbench.warps.rectification import in_frame
-
-ORDER_PIXELS = 2_000
 
 
 def order(rect: Rectification, rig: Rig) -> dict[str, float]:
@@ -27,8 +25,14 @@ def order(rect: Rectification, rig: Rig) -> dict[str, float]:
     >>> order(rb.rectify(rig, method="abraham"), rig)["order_upright"]
     1.0
     """
+    return order_of(rect, rig, SeenView.of(rig))
+
+
+def order_of(rect: Rectification, rig: Rig, seen: SeenView) -> dict[str, float]:
+    """The same, with what the rig's lenses see."""
     rotations = rectifying_rotations(rig)
-    sides = [_side(warp, R, rect.size) for warp, R in zip((rect.left, rect.right), rotations, strict=True)]
+    given = ((rect.left, rotations[0], seen.left.few), (rect.right, rotations[1], seen.right.few))
+    sides = [_side(*side, rect.size) for side in given]
     along, across, upright, closure = (np.concatenate(values) for values in zip(*sides, strict=True))
     if not along.size:
         return {column.key: math.nan for column in Order.columns}
@@ -40,10 +44,12 @@ def order(rect: Rectification, rig: Rig) -> dict[str, float]:
     }
 
 
-def _side(warp: Warp, R_epi_cam: FloatArray, size: tuple[int, int]) -> tuple[FloatArray, ...]:
-    pixels = dense_pixels(warp.source, ORDER_PIXELS)
-    mapped = warp.forward(pixels)
-    pixels, mapped = pixels[in_frame(mapped, size)], mapped[in_frame(mapped, size)]
+def _side(
+    warp: Warp, R_epi_cam: FloatArray, seen_px: FloatArray, size: tuple[int, int]
+) -> tuple[FloatArray, ...]:
+    mapped = warp.forward(seen_px)
+    shown = in_frame(mapped, size)
+    pixels, mapped = seen_px[shown], mapped[shown]
     J = warp.jacobian(pixels)
     rays, _ = warp.source.unproject(pixels)
     x, y, z = np.moveaxis(rays @ R_epi_cam.T, -1, 0)
@@ -100,4 +106,4 @@ class Order(Metric):
 
     def compute(self, case: Case) -> dict[str, float]:
         """Over the pixels of both images that stay in the frame."""
-        return order(case.rect, case.rig)
+        return order_of(case.rect, case.rig, case.pair.seen_view)

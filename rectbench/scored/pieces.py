@@ -140,10 +140,11 @@ class Pieces:
 
     def at(self, px_rect: FloatArray) -> NDArray[np.intp]:
         """The pieces [K] at pixels [K, 2] of the sheet; -1 where there is none."""
-        column = np.searchsorted(self.columns, px_rect[:, 0], side="right") - 1
-        row = np.searchsorted(self.rows, px_rect[:, 1], side="right") - 1
-        down, across = self.numbers.shape
-        found: NDArray[np.intp] = self.numbers[np.clip(row, 0, down - 1), np.clip(column, 0, across - 1)]
+        column, row = (
+            _intervals(sides)[np.clip(px.astype(np.intp), 0, sides[-1])]
+            for sides, px in ((self.columns, px_rect[:, 0]), (self.rows, px_rect[:, 1]))
+        )
+        found: NDArray[np.intp] = self.numbers[row, column]
         return found
 
     def hold(self, pixels: FloatArray, px_rect: FloatArray) -> BoolArray:
@@ -189,8 +190,10 @@ class Pieces:
         """
         low = np.maximum(middle - reach, -0.5)[:, None]
         high = np.minimum(middle + reach, np.array(self.sheet.warp.source.size) - 0.5)[:, None]
-        inwards = np.minimum(high - self.middles, self.middles - low)
-        shares = np.clip(inwards / (2 * self.halves) + 0.5, 0.0, 1.0)
+        shares = np.minimum(high - self.middles, self.middles - low)
+        shares /= 2 * self.halves
+        shares += 0.5
+        np.clip(shares, 0.0, 1.0, out=shares)
         areas: FloatArray = self.areas_px * shares[0] * shares[1]
         return areas
 
@@ -213,6 +216,11 @@ def _spread(side: int, spacing: float) -> NDArray[np.intp]:
     """Whole numbers from the first to the last of a side, about so far apart."""
     steps = max(1, min(side - 1, round((side - 1) / spacing)))
     return np.rint(np.linspace(0, side - 1, steps + 1)).astype(np.intp)
+
+
+def _intervals(sides: NDArray[np.intp]) -> NDArray[np.intp]:
+    """For each whole number from 0 to the last of rising `sides`, the interval between two that holds it."""
+    return np.minimum(np.searchsorted(sides, np.arange(sides[-1] + 1), side="right") - 1, len(sides) - 2)
 
 
 def _corners(table: Table, columns: NDArray[np.intp], rows: NDArray[np.intp]) -> tuple[FloatArray, BoolArray]:

@@ -14,8 +14,8 @@ from rectbench.rigs import Rig
 from rectbench.types import BoolArray, FloatArray
 from rectbench.warps.warp import rotated
 
-DENSE_PIXELS = 60_000
-"""Coverage and order look at about this many pixels of an image, on a regular grid."""
+DENSE_PIXELS, FEW_PIXELS = 60_000, 2_000
+"""About so many pixels of an image, on a regular grid, coverage looks at; order at so few."""
 
 
 def dense_pixels(camera: Camera, count: int = DENSE_PIXELS) -> FloatArray:
@@ -36,6 +36,8 @@ class SeenPixels:
     """[N], of each pixel."""
     shared: BoolArray = field(repr=False)
     """[N], whether the other camera sees it too, as a point at infinity."""
+    few: FloatArray = field(repr=False)
+    """[K, 2], a coarser such grid, for what takes longer a pixel."""
 
     @classmethod
     def of(cls, camera: Camera, other: Camera, R_other_cam: FloatArray) -> SeenPixels:
@@ -52,7 +54,7 @@ class SeenPixels:
         rows = tuple(tuple(map(float, row)) for row in R_other_cam)
         constants = {"camera": camera.constants, "other": other.constants, "R": rows}
         seen, _ = evaluate_points(formula, constants, pixels)
-        return cls(pixels, seen[:, 0], other.contains(seen[:, 1:]))
+        return cls(pixels, seen[:, 0], other.contains(seen[:, 1:]), dense_pixels(camera, FEW_PIXELS))
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,7 +2,9 @@
 
 An object is a folder of files under its key, with a manifest of their digests. It is written beside
 its place and moved there whole, so that a reader sees all of it or nothing, whenever the writer is
-killed; it is checked when read, and dropped where it is damaged. No pickle: `.npz`, PNG and JSON.
+killed; it is checked when read, and dropped where it is damaged. Nobody waits for the disk: what a killed
+process has written is the system's to keep, and where the machine itself goes down, the digests tell what
+never reached the disk, which is then made again. No pickle: `.npz`, PNG and JSON.
 """
 
 from __future__ import annotations
@@ -99,8 +101,6 @@ class Store:
                     "made_from": dict(inputs),
                 }
                 (unfinished / MANIFEST).write_text(json.dumps(manifest, indent=1), encoding="utf-8")
-                for file in [*files, unfinished / MANIFEST, unfinished]:
-                    _flush(file)
                 _move(unfinished, place)
             finally:
                 shutil.rmtree(unfinished, ignore_errors=True)
@@ -177,16 +177,5 @@ def _move(unfinished: Path, place: Path) -> None:
     try:
         unfinished.replace(place)
     except OSError:
-        if not (place / MANIFEST).is_file():
+        if not (place / MANIFEST).is_file():  # else another process made the same object first
             raise
-        return  # another process made the same object first
-    _flush(place.parent)
-
-
-def _flush(path: Path) -> None:
-    """Have the disk hold what was written, before anything is said to be there."""
-    descriptor = os.open(path, os.O_RDONLY)
-    try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)

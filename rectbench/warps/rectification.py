@@ -246,5 +246,6 @@ def _along_and_off(rays: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 def in_frame(px_rect: FloatArray, size: tuple[int, int]) -> NDArray[np.bool_]:
     """Mask [...] of the rectified pixels [..., 2] that lie on an image of `size`; NaN does not."""
-    inside: NDArray[np.bool_] = np.all((px_rect >= -0.5) & (px_rect <= np.array(size) - 0.5), axis=-1)
+    (width, height), u, v = size, px_rect[..., 0], px_rect[..., 1]
+    inside: NDArray[np.bool_] = (u >= -0.5) & (u <= width - 0.5) & (v >= -0.5) & (v <= height - 0.5)
     return inside

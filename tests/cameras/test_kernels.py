@@ -145,3 +145,15 @@ def test_invert_monotone_gives_the_nearer_end_for_a_target_beyond():
     target = np.array([-100.0, 100.0])
     found = invert_monotone(function, target, -1.0, 2.0, np.zeros(2), NUMPY)
     np.testing.assert_allclose(found, [-1, 2], rtol=1e-14)
+
+
+def test_a_point_comes_out_the_same_beside_others_that_take_longer():
+    params = {"fx": 500, "fy": 500, "cx": 640, "cy": 480, "xi": 1.2, "k1": -0.3, "p1": 1e-3, "p2": -8e-4}
+    camera = Camera("unified", SIZE, params)
+    pixels = np.stack(np.meshgrid(np.linspace(0, 1279, 40), np.linspace(0, 959, 30)), axis=-1).reshape(-1, 2)
+    rays, seen = camera.unproject(pixels)
+    assert 0 < seen.mean() < 1  # those beyond the edge are looked for to the last step
+    for some in (pixels[::97], pixels[seen][::50]):
+        alone = np.concatenate([camera.unproject(pixel[None])[0] for pixel in some])
+        together = rays[[np.flatnonzero((pixels == pixel).all(axis=1))[0] for pixel in some]]
+        np.testing.assert_array_equal(alone, together)

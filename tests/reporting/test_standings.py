@@ -15,7 +15,7 @@ import pytest
 from rectbench.reporting.tables.belief_table import belief_table
 from rectbench.reporting.tables.main_tables import main_tables
 from rectbench.reporting.tables.rig_tables import rig_table
-from rectbench.reporting.tables.table import Table, to_csv
+from rectbench.reporting.tables.table import Table, to_csv, to_latex, to_markdown
 from rectbench.runs.run import Run, read_run
 from tests.reporting.runs import failed_row, make_row
 
@@ -74,6 +74,15 @@ def test_equal_methods_tie_and_are_both_bold(write_run: WriteRun) -> None:
     assert [row[place].best for row in table.rows] == [True, True, False]
     ranks = column(table, "rank")
     assert ranks["abraham"] == ranks["local-homography"] == "1–2"
+
+
+def test_files_say_what_the_page_alone_shows_when_pointed_at(write_run: WriteRun) -> None:
+    rows = rows_of({"abraham": around(0.3), "hartley": around(0.9)}, sampling_lost=0.5, distortion_native=0.1)
+    table = only_table(read_run(write_run(rows)))
+    for text in (to_markdown(table), to_latex(table)):
+        assert "Pixels lost: Share of source area squeezed (" in text
+        assert "Distortion, native: The paper's mean L" in text.replace("’", "'")
+    assert "Pixels lost" not in table.caption
 
 
 def test_the_design_s_resolution_stands_before_the_results(write_run: WriteRun) -> None:

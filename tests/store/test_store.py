@@ -41,7 +41,7 @@ def test_what_is_written_is_read(store: Store) -> None:
 
 
 @pytest.mark.parametrize("name", ["a.txt", "b.txt", MANIFEST])
-@pytest.mark.parametrize("damage", ["changed", "cut short", "removed"])
+@pytest.mark.parametrize("damage", ["changed", "cut short", "empty", "removed"])
 def test_a_damaged_object_is_dropped_with_a_word(
     store: Store, name: str, damage: str, caplog: pytest.LogCaptureFixture
 ) -> None:
@@ -50,7 +50,8 @@ def test_a_damaged_object_is_dropped_with_a_word(
     if damage == "removed":
         file.unlink()
     else:
-        file.write_bytes(b"\x00" + content[1:] if damage == "changed" else content[: len(content) // 2])
+        left = {"changed": b"\x00" + content[1:], "cut short": content[: len(content) // 2], "empty": b""}
+        file.write_bytes(left[damage])
     with caplog.at_level(logging.WARNING, logger="rectbench.store"):
         assert store.read("things", INPUTS) is None
     assert "damaged" in caplog.text

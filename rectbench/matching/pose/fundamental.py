@@ -55,9 +55,10 @@ def sampson_residuals(F: FloatArray, left: FloatArray, right: FloatArray) -> Flo
     array([0.141])
     """
     lines_right, lines_left = left @ F.T, right @ F
-    algebraic = (right * lines_right).sum(axis=-1)
-    gradient = np.sqrt((lines_right[:, :2] ** 2).sum(axis=-1) + (lines_left[:, :2] ** 2).sum(axis=-1))
-    residuals: FloatArray = algebraic / gradient
+    # Column by column: fits ask by the thousand, and sums over so short an axis take three times as long.
+    (a, b, c), (d, e, f) = right.T, lines_right.T
+    p, q, _ = lines_left.T
+    residuals: FloatArray = (a * d + b * e + c * f) / np.sqrt((d * d + e * e) + (p * p + q * q))
     return residuals
 
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from rectbench.plugins.metric import Column
 from rectbench.reporting.asked import methods_part
 from rectbench.reporting.names import named
-from rectbench.reporting.tables.captions import averages_text
+from rectbench.reporting.tables.captions import averages_text, capitalised
 from rectbench.reporting.tables.numbers import MISSING
 from rectbench.reporting.tables.standings import Standing, behind_text, standing
 from rectbench.reporting.tables.summaries import Summary
@@ -82,7 +84,13 @@ def _main_table(run: Run, pose: str) -> Table:
         headings=tuple(head for head, _ in placed),
         sections=(Section("", tuple(zip(*(entries for _, entries in placed), strict=True))),),
         notes=tuple(filter(None, notes)),
+        legend=_legend(columns),
     )
+
+
+def _legend(columns: Iterable[Column]) -> str:
+    """What those columns mean that the page adds to the terminal's: caption and headings do not say it."""
+    return " ".join(f"{capitalised(c.heading)}: {c.meaning}" for c in columns if c.shown == "page")
 
 
 def _rank_heading(ranking: Column) -> Heading:

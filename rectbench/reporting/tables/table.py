@@ -92,6 +92,13 @@ class Table:
     notes: tuple[str, ...] = ()
     kind: str = ""
     part: str = ""
+    legend: str = ""
+    """What columns mean whose headings do not say it, where no pointer can be held on them."""
+
+    @property
+    def printed_caption(self) -> str:
+        """The caption of a file, with the legend."""
+        return " ".join(filter(None, (self.caption, self.legend)))
 
     @property
     def rows(self) -> list[tuple[Entry, ...]]:
@@ -162,7 +169,7 @@ def to_markdown(table: Table) -> str:
     """A pipe table a section, best values bold."""
     headings = [_escape_markdown(heading.text) for heading in table.headings]
     sides = ["right" if heading.numeric else "left" for heading in table.headings]
-    lines = [f"**{_escape_markdown(table.title)}.** {_escape_markdown(table.caption)}", ""]
+    lines = [f"**{_escape_markdown(table.title)}.** {_escape_markdown(table.printed_caption)}", ""]
     for section in table.sections:
         lines += [f"*{_escape_markdown(section.title)}*", ""] if section.title else []
         rows = [[_markdown_entry(entry) for entry in row] for row in section.rows]
