@@ -269,8 +269,8 @@ class Metric(ABC):
     """The heading under which it is shown, see `TOPICS`."""
     needs: ClassVar[frozenset[Need]] = frozenset()
     """What of the pair it looks at beside the geometry: `true_matches`, which lenses alone have too; `truth`
-    (these matches included); or `images` (with what is found in them). Nothing is rendered that no metric needs,
-    and nothing else is handed out."""
+    (these matches included); or `images` (with what is found in them). Nothing is rendered that no metric
+    needs, and nothing else is handed out."""
     columns: ClassVar[tuple[Column, ...]]
 
     @abstractmethod

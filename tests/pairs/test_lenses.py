@@ -51,8 +51,9 @@ def test_its_true_matches_are_points_at_5_to_200_baselines_on_which_exact_rows_a
     assert len(left) > 8_000
     rect = rb.rectify(pair.rig, method="abraham")
     assert np.abs(rect.left.forward(left) - rect.right.forward(right))[:, 1].max() < 1e-9
-    columns = rect.left.forward(left)[:, 0] - rect.right.forward(right)[:, 0]
-    distances = np.linalg.norm(rect.triangulate(rect.left.forward(left), columns), axis=1) / pair.rig.baseline_m
+    px_left, px_right = rect.left.forward(left), rect.right.forward(right)
+    points = rect.triangulate(px_left, px_left[:, 0] - px_right[:, 0])
+    distances = np.linalg.norm(points, axis=1) / pair.rig.baseline_m
     assert distances.min() == pytest.approx(5, rel=0.01)
     assert distances.max() == pytest.approx(200, rel=0.05)
 
