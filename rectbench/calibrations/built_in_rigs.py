@@ -27,10 +27,12 @@ FISHEYE_DEG = 120.0
 four times as long as in the middle (1 / cos² 60°)."""
 CALIBRATED_TWICE = frozenset({"tumvi-kb"})
 """Rigs whose lenses another rig has as well, by another model: as units of a comparison they count once."""
+MADE_UP = frozenset({"lens-100", "lens-160", "lens-190", "lens-220"})
+"""Ideal fisheye lenses, of which nothing real is a sample."""
 
 
 def fisheye_rigs(least_fov_deg: float = FISHEYE_DEG) -> tuple[str, ...]:
-    """The names of the rigs that ship with rectbench and whose two lenses see that far, a lens once, sorted.
+    """The names of the rigs that ship with rectbench and whose two lenses, real ones, see that far, a lens once, sorted.
 
     The field of view is that across the image's diagonal, of the narrower lens.
 
@@ -40,7 +42,7 @@ def fisheye_rigs(least_fov_deg: float = FISHEYE_DEG) -> tuple[str, ...]:
     >>> "t265" in rb.fisheye_rigs(least_fov_deg=170)
     False
     """
-    lenses = (name for name in rig_names() if name not in CALIBRATED_TWICE)
+    lenses = (name for name in rig_names() if name not in CALIBRATED_TWICE | MADE_UP)
     return tuple(name for name in lenses if _fov_deg(name) >= least_fov_deg)
 
 

@@ -128,7 +128,7 @@ class _Source:
 
     def lacks(self, needs: Set[str]) -> str:
         """What is needed and its pairs have not, in words that end an error; empty where they have all."""
-        for need, called in (("truth", "the truth"), ("images", "images")):
+        for need, called in (("truth", "the truth"), ("images", "images"), ("true_matches", "true matches")):
             if need in needs and need not in self.offers:
                 return f"{called}, which {self.pairs_called} have not"
         if not self.match_levels(needs):
@@ -147,7 +147,7 @@ class Rendered(_Source):
     """Pairs that are rendered, so that any rig can stand in any scene."""
 
     pairs_called = "rendered pairs"
-    offers = frozenset({"truth", "images"})
+    offers = frozenset({"truth", "images", "true_matches"})
 
     def specs(self, part: StatedPart) -> Iterator[RenderedSpec]:
         """What is to be rendered for a part; raises UnknownName for a scene, rig or motion that is none."""
@@ -181,7 +181,7 @@ class Lenses(_Source):
     """Rigs and their motions without a scene: nothing is rendered."""
 
     pairs_called = "lenses without a scene"
-    offers = frozenset()
+    offers = frozenset({"true_matches"})
     selects = ("rigs",)
 
     def specs(self, part: StatedPart) -> Iterator[LensSpec]:

@@ -160,7 +160,7 @@ def _demanding(
     return replace(
         part,
         needs_images=ESTIMATED in part.poses or FROM_IMAGES in all_levels or "images" in needs,
-        needs_truth="truth" in needs or bool(all_levels - {"", FROM_IMAGES}),
+        needs_truth=bool(needs & {"truth", "true_matches"} or all_levels - {"", FROM_IMAGES}),
     )
 
 

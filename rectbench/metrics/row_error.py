@@ -119,7 +119,7 @@ class RowErrorMetric(Metric):
     """Row error of true correspondences."""
 
     name, topic = "row_error", "Row error"
-    needs = frozenset({"truth"})
+    needs = frozenset({"true_matches"})
     columns = (
         Column.pixels(
             "row_error_mean_px",
@@ -193,7 +193,7 @@ class RowErrorMetric(Metric):
     )
 
     def compute(self, case: Case) -> dict[str, float]:
-        """Of 10,000 exact correspondences, unoccluded in both images."""
+        """Of 10,000 exact correspondences."""
         matches = case.pair.true_matches
         errors = row_error(case.rect, *matches)
         return errors.columns() | on_equal_view(case, matches, errors)

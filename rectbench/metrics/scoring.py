@@ -92,7 +92,8 @@ class _DeclaredPair:
     """A pair that refuses the rest."""
 
     def __init__(self, pair: Known, metric: str, needs: frozenset[Need]) -> None:
-        self._pair, self._metric, self._needs = pair, metric, needs
+        implied: frozenset[Need] = frozenset({"true_matches"} if "truth" in needs else ())
+        self._pair, self._metric, self._needs = pair, metric, needs | implied
 
     def __getattr__(self, name: str) -> Any:
         need = _NEEDED.get(name)
@@ -103,7 +104,8 @@ class _DeclaredPair:
 
 
 _NEEDED: Mapping[str, Need] = {
-    **dict.fromkeys(("truth", "true_matches"), "truth"),
+    "truth": "truth",
+    "true_matches": "true_matches",
     **dict.fromkeys(("images", "board", "features", "estimate", "shown_matches", "pose_seconds"), "images"),
 }
 """What a metric must need to be handed a thing of the pair."""

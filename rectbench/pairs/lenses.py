@@ -11,6 +11,7 @@ import numpy as np
 from rectbench.calibrations import load_rig
 from rectbench.errors import InvalidInput
 from rectbench.images.stereo_pair import StereoPair
+from rectbench.metrics.row_error import SCORED_MATCHES
 from rectbench.pairs.pair import Pair
 from rectbench.pairs.rendering import placed
 from rectbench.pairs.rig_numbers import rig_numbers
@@ -64,6 +65,11 @@ class LensPair(Pair):
     def truth(self) -> Truth:
         """Raises InvalidInput."""
         self._refuse("truth")
+
+    @cached_property
+    def true_matches(self) -> Matches:
+        """About 10,000 exact ones, of points at 5 to 200 baselines all over the view, for want of a scene."""
+        return matches_from_pose(self.rig, SCORED_MATCHES)
 
     def features(self, *, by_estimate: bool) -> Matches:
         """Raises InvalidInput."""

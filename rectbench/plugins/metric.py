@@ -23,7 +23,7 @@ from rectbench.warps import Rectification
 
 Better = Literal["lower", "higher"]
 Average = Literal["mean", "geometric", "rms", "max", "min"]
-Need = Literal["truth", "images"]
+Need = Literal["truth", "images", "true_matches"]
 Shown = Literal["rows", "pairs", "topic", "page", "summary"]
 
 T = TypeVar("T")
@@ -178,7 +178,8 @@ class Known(Protocol):
 
     @property
     def true_matches(self) -> Matches:
-        """10,000 exact correspondences, unoccluded in both images. Raises InvalidInput for photographs."""
+        """10,000 exact correspondences, unoccluded in both images; of lenses alone, of points at 5 to 200
+        baselines all over the view. Raises InvalidInput for photographs."""
 
     @property
     def board(self) -> BoardMatches | None:
@@ -267,8 +268,9 @@ class Metric(ABC):
     topic: ClassVar[str]
     """The heading under which it is shown, see `TOPICS`."""
     needs: ClassVar[frozenset[Need]] = frozenset()
-    """What of the pair it looks at beside the geometry: `truth` (its matches too), or `images` (with what is
-    found in them). Nothing is rendered that no metric needs, and nothing else is handed out."""
+    """What of the pair it looks at beside the geometry: `true_matches`, which lenses alone have too; `truth`
+    (these matches included); or `images` (with what is found in them). Nothing is rendered that no metric
+    needs, and nothing else is handed out."""
     columns: ClassVar[tuple[Column, ...]]
 
     @abstractmethod

@@ -75,8 +75,8 @@ def test_a_report_of_its_own_states_them_as_a_group_does() -> None:
     ("fields", "message"),
     [
         (
-            {"metrics": ("row_error",)},
-            "metric row_error needs the truth, which lenses without a scene have not",
+            {"metrics": ("reconstruction",)},
+            "metric reconstruction needs the truth, which lenses without a scene have not",
         ),
         ({"metrics": ("row_error_features",)}, "metric row_error_features needs images, which lenses"),
         ({"poses": ("exact", "estimated")}, "pose estimated needs images, which lenses"),

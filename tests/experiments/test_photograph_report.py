@@ -205,5 +205,7 @@ def test_what_photographs_have_not_cannot_be_asked(change: dict[str, object], sa
 
 def test_a_metric_of_photographs_needs_no_truth(folder: Path) -> None:
     asking = REPORT.model_copy(update={"metrics": ("geometry", "row_error")})
-    with pytest.raises(rb.InvalidInput, match="metric row_error needs the truth, which photographs have not"):
+    with pytest.raises(
+        rb.InvalidInput, match="metric row_error needs true matches, which photographs have not"
+    ):
         make_plan(asking, data=folder)

@@ -85,7 +85,7 @@ def test_a_bundle_is_its_members(case: rb.Case) -> None:
 
 def test_what_is_needed_is_known_before_anything_is_rendered() -> None:
     assert needs_of(["geometry", "timing", "energy"]) == frozenset()
-    assert needs_of(["row_error"]) == {"truth"}
+    assert needs_of(["row_error"]) == {"true_matches"}
     assert needs_of(["row_error_features", "row_error_board"]) == {"images"}
 
 

@@ -28,7 +28,6 @@ def lenses(**fields: Any) -> Pair:
     [
         lambda pair: pair.images,
         lambda pair: pair.truth,
-        lambda pair: pair.true_matches,
         lambda pair: pair.board,
         lambda pair: pair.estimate,
         lambda pair: pair.shown_matches(),
@@ -44,6 +43,19 @@ def test_what_needs_a_scene_is_refused_in_a_line_that_says_so(
         ask(lenses())
     assert "expected a scene" in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+def test_its_true_matches_are_points_at_5_to_200_baselines_on_which_exact_rows_agree() -> None:
+    pair = lenses()
+    left, right = pair.true_matches
+    assert len(left) > 8_000
+    rect = rb.rectify(pair.rig, method="abraham")
+    assert np.abs(rect.left.forward(left) - rect.right.forward(right))[:, 1].max() < 1e-9
+    px_left, px_right = rect.left.forward(left), rect.right.forward(right)
+    points = rect.triangulate(px_left, px_left[:, 0] - px_right[:, 0])
+    distances = np.linalg.norm(points, axis=1) / pair.rig.baseline_m
+    assert distances.min() == pytest.approx(5, rel=0.01)
+    assert distances.max() == pytest.approx(200, rel=0.05)
 
 
 def test_it_is_the_rig_as_the_motion_places_it_whatever_the_seed() -> None:
