@@ -26,6 +26,7 @@ from rectbench.warps.view.extent import perspective_size as perspective_size
 from rectbench.warps.view.extent import view_angles as view_angles
 from rectbench.warps.view.framing import Framing as Framing
 from rectbench.warps.view.framing import framed as framed
+from rectbench.warps.view.perspective import PerspectiveFrame as PerspectiveFrame
 from rectbench.warps.view.sampling import evaluation_pixels as evaluation_pixels
 from rectbench.warps.view.sampling import outline_pixels as outline_pixels
 from rectbench.warps.warp import Warp as Warp

@@ -11,9 +11,15 @@ ANY_MOTION = ("polar", "log-polar", "polar-optimal")
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_an_epipole_in_the_view_is_refused(method: str) -> None:
-    with pytest.raises(rb.Unsupported, match="epipole"):
-        rb.rectify(rig(centre_m=(0.02, 0.0, 0.3)), method=method)
+def test_a_rig_that_sees_its_epipoles_is_rectified_but_for_what_is_about_them(method: str) -> None:
+    forward = rig(centre_m=(0.02, 0.0, 0.3))
+    rect = rb.rectify(forward, method=method)
+    _, px_left, px_right = points_before(forward, 400)
+    errors = rb.metrics.row_error(rect, px_left, px_right).columns()
+    assert errors["row_error_max_px"] < 1e-6
+    assert errors["row_error_matches"] > 20
+    epipole, _ = forward.left.project(forward.centre_right_in_left)
+    assert np.isnan(rect.left.forward(epipole)).all()
 
 
 @pytest.mark.parametrize("method", [*METHODS, *ANY_MOTION])

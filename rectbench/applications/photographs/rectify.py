@@ -133,6 +133,7 @@ def _rectification(
     """How it was chosen, if it was; the method's own frame, if it is another; and the one that is wanted."""
     without_calibration = request.rig is None
     given: dict[str, Any] = {"images": images, "matches": matches, "seed": request.seed}
+    given["margin_deg"] = request.margin_deg
     if request.method == BEST:
         methods = uncalibrated_methods() if without_calibration else None
         choice = best_method(rig, framing=framing, trusted=known.best, methods=methods, **given)

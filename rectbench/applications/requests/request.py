@@ -13,6 +13,8 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationEr
 from rectbench.applications.requests.words import options_in, size_in
 from rectbench.errors import InvalidInput, RectbenchError
 from rectbench.plugins.defaults import DEFAULT_METHOD
+from rectbench.rigs import MARGIN_DEG
+from rectbench.rigs.rig import checked_margin
 
 
 @dataclass(frozen=True)
@@ -95,6 +97,7 @@ def number(
 Seed = Annotated[int, number(Integral, "a whole number from 0 on", lambda n: n >= 0, "seed")]
 Positive = Annotated[float, number(Real, "a number above 0", lambda x: 0 < x < float("inf"))]
 ImageWidth = Annotated[int, number(Integral, "a width in pixels", lambda n: n >= 1)]
+Margin = Annotated[float, BeforeValidator(checked_margin)]
 Text = Annotated[str, BeforeValidator(str)]
 """A name or a path."""
 
@@ -124,7 +127,17 @@ class SizedRigRequest(RigRequest):
     )
 
 
-class OptionsRequest(Request):
+class MarginRequest(Request):
+    """What of the view is trimmed, before any method sees it."""
+
+    margin_deg: Margin = word(
+        "Nearer to the epipoles than this, where rows meet, the view is trimmed.",
+        default=MARGIN_DEG,
+        metavar="DEGREES",
+    )
+
+
+class OptionsRequest(MarginRequest):
     """How a method is set."""
 
     options: dict[str, Any] = word(
