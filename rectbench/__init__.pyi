@@ -73,8 +73,8 @@ from .warps import Epipolar as Epipolar
 from .warps import Framing as Framing
 from .warps import MonotoneSpline as MonotoneSpline
 from .warps import Perspective as Perspective
-from .warps import PlanarPolar as PlanarPolar
 from .warps import PerspectiveFrame as PerspectiveFrame
+from .warps import PlanarPolar as PlanarPolar
 from .warps import PolynomialInverse as PolynomialInverse
 from .warps import Profile as Profile
 from .warps import Radial as Radial

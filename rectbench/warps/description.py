@@ -151,7 +151,9 @@ class Field:
 NUMBER = Field(float, lambda section, key: section.number(key, "a number"))
 TEXT = Field(str, lambda section, key: section.text(key, "a word"))
 MATRIX = Field(lambda matrix: matrix.tolist(), lambda section, key: section.matrix(key, "a 3x3 matrix", 3, 3))
-NUMBERS = Field(lambda numbers: [float(n) for n in numbers], lambda section, key: tuple(section.numbers(key, "numbers")))
+NUMBERS = Field(
+    lambda numbers: [float(n) for n in numbers], lambda section, key: tuple(section.numbers(key, "numbers"))
+)
 TARGET = Field(
     lambda target: _fields(target, TARGETS),
     lambda section, key: _read(section.section(key, "a target"), "target", TARGETS),
