@@ -30,7 +30,7 @@ class Law:
         """Raises Unsupported where the view reaches beyond the angles that the law has."""
         self.name, self.profile, self.bounds = name, rb.Radial(name, 1.0, 0.0), bounds
         reach, limit = np.abs(bounds).max(), self.profile.high
-        if reach > LARGEST_SHARE * limit:
+        if name != "equidistant" and reach > LARGEST_SHARE * limit:
             limit_deg, reach_deg = np.degrees([limit, reach])
             raise rb.Unsupported(
                 f"model={name} ends at {limit_deg:.0f} degrees; the view reaches {reach_deg:.1f}"

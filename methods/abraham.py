@@ -24,7 +24,6 @@ class Abraham(rb.Rectifier[Options]):
     )
 
     def fit(self, problem: rb.Problem, options: Options) -> rb.Rectification:
-        rb.refuse_epipole_in_view(problem.rig)
         focal = options.focal_px or rb.centre_resolution_px(problem.rig)
         u, v = rb.Radial(options.law, focal, 0.0), rb.Radial("equidistant", focal, 0.0)
         return rb.Rectification.from_profiles(problem.rig, u, u, v, {"focal_px": focal})

@@ -26,7 +26,10 @@ class Options(rb.Options):
 
 
 class Conventional(rb.Rectifier[Options]):
-    """û = c_x + f x/z, v̂ = c_y + f y/z after Bouguet's rotations; rays behind the image are masked."""
+    """û = c_x + f x/z, v̂ = c_y + f y/z after Bouguet's rotations; rays behind the image are masked.
+
+    Where a camera looks along the baseline the image plane is turned about it to where it shows most.
+    """
 
     name = "conventional"
     references = (
@@ -35,7 +38,6 @@ class Conventional(rb.Rectifier[Options]):
     )
 
     def fit(self, problem: rb.Problem, options: Options) -> rb.Rectification:
-        rb.refuse_epipole_in_view(problem.rig)
         rig, size = problem.rig, rb.perspective_size(problem.rig)
         ways: dict[str, Callable[[], float]] = {
             "centre-resolution": lambda: rb.centre_resolution_px(rig),
@@ -52,16 +54,15 @@ class Conventional(rb.Rectifier[Options]):
         return self.at_focal(rig, focal, size)
 
     def at_focal(self, rig: rb.Rig, focal: float, size: tuple[int, int]) -> rb.Rectification:
-        """The perspective rectification of one focal length, the sources' middles in the middle."""
-        rays = rb.centre_rays(rig)
-        if (rays[:, 2] <= 0).any():
-            raise rb.Unsupported(
-                "the images' middles lie behind the rectified plane: the cameras look too far apart"
-            )
-        middle = focal * (rays[:, :2] / rays[:, 2:]).mean(axis=0)
-        cx, cy = (np.array(size) - 1) / 2 - middle
+        """The perspective rectification of one focal length, what is in front in the middle."""
+        frame = rb.PerspectiveFrame.of(rig)
+        cx, cy = (np.array(size) - 1) / 2 - focal * frame.middle
         target = rb.Perspective.from_focal(focal, cx, cy)
-        return rb.Rectification.from_targets(rig, target, target, size, {"focal_px": focal})
+        left, right = (
+            rb.Warp(rig.left, frame.R_rect_left, target),
+            rb.Warp(rig.right, frame.R_rect_right, target),
+        )
+        return rb.Rectification(rig, left, right, size, {"focal_px": focal})
 
     def least_distorted(self, problem: rb.Problem, size: tuple[int, int]) -> float:
         """The focal length of least L: a factor on f scales the whole image, so one look is enough."""

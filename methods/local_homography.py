@@ -48,7 +48,6 @@ class LocalHomography(rb.Rectifier[Options]):
 
     def fit(self, problem: rb.Problem, options: Options) -> rb.Rectification:
         """Steps 3 to 5 of the paper's algorithm: the pose is given, and images are built by the warps."""
-        rb.refuse_epipole_in_view(problem.rig)
         bounds = rb.view_angles(problem.rig)
         if options.columns == "shared":
             bounds = bounds._replace(gamma_left=bounds.gamma, gamma_right=bounds.gamma)

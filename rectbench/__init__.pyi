@@ -14,6 +14,7 @@ from .calibrations import load_covariance as load_covariance
 from .calibrations import load_rig as load_rig
 from .calibrations import rig_names as rig_names
 from .cameras import Camera as Camera
+from .cameras import Cones as Cones
 from .cameras import Projection as Projection
 from .errors import InvalidInput as InvalidInput
 from .errors import InvalidResult as InvalidResult
@@ -60,6 +61,7 @@ from .rendering.world import Material as Material
 from .rendering.world import Mesh as Mesh
 from .rendering.world import Sun as Sun
 from .rendering.world import World as World
+from .rigs import MARGIN_DEG as MARGIN_DEG
 from .rigs import Rig as Rig
 from .rigs import RigCovariance as RigCovariance
 from .scored import Delivered as Delivered
@@ -70,7 +72,10 @@ from .warps import Composed as Composed
 from .warps import Cubic as Cubic
 from .warps import Epipolar as Epipolar
 from .warps import Framing as Framing
+from .warps import MonotoneSpline as MonotoneSpline
 from .warps import Perspective as Perspective
+from .warps import PerspectiveFrame as PerspectiveFrame
+from .warps import PlanarPolar as PlanarPolar
 from .warps import PolynomialInverse as PolynomialInverse
 from .warps import Profile as Profile
 from .warps import Radial as Radial

@@ -21,7 +21,7 @@ from rectbench.calibrations.reading import RigSource
 from rectbench.matching.features.matches import RATIO
 from rectbench.matching.pose.estimate import POSE_PIXELS, PoseEstimate
 from rectbench.plugins.defaults import DEFAULT_METHOD
-from rectbench.rigs import Rig
+from rectbench.rigs import MARGIN_DEG, Rig
 from rectbench.warps import Framing, Rectification
 
 if TYPE_CHECKING:
@@ -42,6 +42,7 @@ def rectify(
     pixels: ArrayLike | None = None,
     matches: Sequence[ArrayLike] | None = None,
     seed: int = 0,
+    margin_deg: float = MARGIN_DEG,
     **options: Any,
 ) -> Rectification:
     """Rectify a rig.
@@ -57,11 +58,14 @@ def rectify(
     matches : corresponding pixels (left [N, 2], right [N, 2]), for methods that work from them; by
         default they are made from the rig's pose.
     seed : of a method's random choices.
+    margin_deg : nearer to the epipoles than this, where rows meet, the view is trimmed: the method is handed
+        lenses that see nothing there, see `Rig.trimmed`.
     options : the method's own (`rectbench list methods --verbose`).
 
     Returns the rectification, see `Rectification`. Raises UnknownName for a method or option that
     does not exist; InvalidInput for an argument that cannot be used; Unsupported, with the reason,
-    where the method cannot serve this rig; InvalidResult where a plugin's answer is no rectification.
+    where the method cannot serve this rig, or its two views have nothing in common; InvalidResult where a
+    plugin's answer is no rectification.
 
     >>> import rectbench as rb
     >>> rig = rb.load_rig("sony-as200v").scaled(0.1)
@@ -71,7 +75,7 @@ def rectify(
     >>> rect.left.forward([[80.0, 50.0]]).shape
     (1, 2)
     """
-    request = SeededMethodRequest(method=method, options=options, seed=seed)
+    request = SeededMethodRequest(method=method, options=options, seed=seed, margin_deg=margin_deg)
     return rectify_rig(checked_rig(rig), request, images=images, pixels=pixels, matches=matches)
 
 
@@ -88,6 +92,7 @@ def rectify_images(
     tables: Sequence[str] = ("npz", "opencv", "fixed"),
     measured_pairs: int = 5,
     seed: int = 0,
+    margin_deg: float = MARGIN_DEG,
     max_angle_deg: float | None = None,
     unit: str | None = None,
     cameras: Sequence[str] | None = None,
@@ -110,6 +115,7 @@ def rectify_images(
     measured_pairs : so many pairs, spread over all, have their rows measured by their own features and, if
         they show one, a calibration board.
     seed : of random choices.
+    margin_deg : nearer to the epipoles than this the view is trimmed, see `rectify`.
     max_angle_deg, unit, cameras : the lenses' image circle, what translations are in, and which two
         cameras are meant, where the calibration does not tell. An image circle that nobody states is read
         from a mask beside images or calibration, or from the black rim; see the result's `circle`.
@@ -263,6 +269,7 @@ def export_dataset(
     image_width: int | None = None,
     method: str | Path = DEFAULT_METHOD,
     options: Mapping[str, Any] | None = None,
+    margin_deg: float = MARGIN_DEG,
     progress: bool | None = None,
 ) -> Exported:
     """Render a dataset that other tools open: a pair a seed, the truth about it, and its rectification.
@@ -273,6 +280,7 @@ def export_dataset(
     out : the dataset's folder; what of the same dataset is whole there already is kept.
     seeds : a pair each.
     method, options : what rectifies the pairs, from their true rig; a method that works from the pose.
+    margin_deg : nearer to the epipoles than this the view is trimmed, see `rectify`.
     progress : a bar on stderr; on a terminal by default.
 
     Written are images, depth, visibility and flow; the rectified pair with its masks and exact disparity;

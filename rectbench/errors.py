@@ -53,8 +53,9 @@ class Unsupported(RectbenchError):
     """A rectifier that cannot serve this rig, with the geometric reason.
 
     >>> import rectbench as rb
-    >>> wide = rb.Camera("equidistant", (400, 400), {"fx": 100, "fy": 100, "cx": 200, "cy": 200})
-    >>> rb.rectify(rb.Rig(wide, wide, [[1, 0, 0], [0, 1, 0], [0, 0, 1]], [-0.1, 0, 0]))
+    >>> lens = rb.Camera("pinhole", (400, 400), {"fx": 400, "fy": 400, "cx": 200, "cy": 200})
+    >>> back_to_back = rb.Rig(lens, lens, [[-1, 0, 0], [0, 1, 0], [0, 0, -1]], [0, 0, -0.1])
+    >>> rb.rectify(back_to_back)
     Traceback (most recent call last):
     rectbench.errors.Unsupported: ...
     """

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 Constants = Mapping[str, Any]
-"""Numbers of a formula by name: floats, tuples of floats, or such mappings nested."""
+"""Numbers of a formula by name: floats, tables (arrays [N]), tuples of these, or such mappings nested."""
 
 
 class Matches(NamedTuple):

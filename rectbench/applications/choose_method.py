@@ -20,7 +20,7 @@ from rectbench.metrics import frame_costs, row_error, row_misfit
 from rectbench.plugins.fitting import checked_options, fit
 from rectbench.plugins.rectifier import METHODS, Problem, Rectifier, pose_problem
 from rectbench.registry import Plugin, registry
-from rectbench.rigs import Rig
+from rectbench.rigs import MARGIN_DEG, Rig
 from rectbench.scored import Delivered, ScoredPixels, ScoredView, check_agreement
 from rectbench.scored.differences import differences
 from rectbench.types import BoolArray, FloatArray, Images, Matches
@@ -103,6 +103,7 @@ def best_method(
     trusted: Matches | None = None,
     methods: Sequence[str] | None = None,
     seed: int = 0,
+    margin_deg: float = MARGIN_DEG,
 ) -> Choice:
     """Try all methods that apply to a rig, and choose.
 
@@ -116,6 +117,7 @@ def best_method(
         them all rows count as good.
     methods : names to try; all by default.
     seed : of the methods' random choices.
+    margin_deg : nearer to the epipoles than this the view is trimmed, see `rectify`.
 
     Raises InvalidInput for a framing in which methods cannot be compared, Unsupported with the reasons
     where no method applies.
@@ -133,10 +135,10 @@ def best_method(
         raise InvalidInput(f"{both} together say what is shown; expected one of them to compare in")
     if chosen.fov_deg is None and chosen.coverage is None:
         chosen = replace(chosen, coverage=COVERAGE)
-    problem = pose_problem(rig, images=images, matches=matches, seed=seed)
+    problem = pose_problem(rig, images=images, matches=matches, seed=seed, margin_deg=margin_deg)
     found = registry(METHODS)
     plugins = found.plugins() if methods is None else [found.get(name) for name in methods]
-    view = ScoredView.of(rig)
+    view = ScoredView.of(rig, margin_deg=margin_deg)
     tried = [_tried(plugin, problem, view, chosen, trusted) for plugin in plugins]
     if not any(candidate.rectification for candidate in tried):
         by_reason: dict[str, list[str]] = {}
@@ -196,7 +198,10 @@ def log_distortion_where(rect: Rectification, delivered: Delivered, framing: Fra
     if np.concatenate(shown).all():
         return delivered.log_stretches.distortion(np.concatenate(weights))[0]
     J = np.concatenate(
-        [differences(rect.warp(side), px)[1] for side, px in zip(SIDES, asked_px, strict=True)]
+        [
+            differences(rect.warp(side), px, turn_px=rect.turn_px)[1]
+            for side, px in zip(SIDES, asked_px, strict=True)
+        ]
     )
     return LogStretches.of(J).distortion()[0] if np.isfinite(J).all() else math.nan
 

@@ -95,6 +95,7 @@ def rectify_rig(
         matches=None if matches is None else checked_matches(matches),
         images=None if images is None else checked_images(images, rig),
         seed=request.seed,
+        margin_deg=request.margin_deg,
     )
     return fit(plugin, problem, checked_options(plugin, request.options))
 

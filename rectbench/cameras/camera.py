@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 import rectbench.cameras.models  # noqa: F401  (registers the projection models)
+from rectbench.cameras.cones import Cones, outside
 from rectbench.cameras.lens import lens_named
 from rectbench.cameras.parameters import checked_parameters
 from rectbench.cameras.projection import Projection, as_points
@@ -39,6 +40,8 @@ class Camera(Projection):
         are sequences.
     max_angle_deg : angle from the axis beyond which the lens shows nothing (the image circle);
         None where the model's own domain is the only bound.
+    blind : a part of the view of which the lens is to show nothing, such as what lies about the epipoles of
+        a rig (see `Rig.trimmed`); None where there is none.
 
     Raises InvalidInput for a size, parameter or angle that makes no camera.
 
@@ -56,27 +59,32 @@ class Camera(Projection):
     size: tuple[int, int]
     params: Mapping[str, Any] = field(hash=False)
     max_angle_deg: float | None = None
+    blind: Cones | None = None
 
     def __post_init__(self) -> None:
         lens = lens_named(self.model)
         object.__setattr__(self, "size", _checked_size(self.size))
         object.__setattr__(self, "params", MappingProxyType(checked_parameters(lens, self.params)))
         object.__setattr__(self, "max_angle_deg", _checked_angle(self.max_angle_deg))
+        if not isinstance(self.blind, Cones | None):
+            raise InvalidInput(f"blind is {type(self.blind).__name__}; expected Cones, or None")
         _ = self.constants  # a lens that cannot be derived fails here, not at its first use
 
     def __repr__(self) -> str:
         limit = "" if self.max_angle_deg is None else f", max_angle_deg={self.max_angle_deg!r}"
-        return f"Camera({self.model!r}, {self.size!r}, {dict(self.params)!r}{limit})"
+        blind = "" if self.blind is None else f", blind={self.blind!r}"
+        return f"Camera({self.model!r}, {self.size!r}, {dict(self.params)!r}{limit}{blind})"
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return Camera, (self.model, self.size, dict(self.params), self.max_angle_deg)
+        return Camera, (self.model, self.size, dict(self.params), self.max_angle_deg, self.blind)
 
     @cached_property
     def constants(self) -> Constants:
         """Parameters and what the model derives from them, the edge of its domain included."""
         derived = lens_named(self.model).derive(SimpleNamespace(**self.params))
         limit = 180.0 if self.max_angle_deg is None else self.max_angle_deg
-        return {**self.params, **derived, "cos_max_angle": math.cos(math.radians(limit))}
+        blind = {} if self.blind is None else {"blind": self.blind.constants}
+        return {**self.params, **derived, "cos_max_angle": math.cos(math.radians(limit)), **blind}
 
     @property
     def width(self) -> int:
@@ -90,11 +98,18 @@ class Camera(Projection):
 
     def project_formula(self, c: Any, x: Any, y: Any, z: Any, xp: Formulas) -> tuple[Any, Any, Any]:
         u, v, ok = lens_named(self.model).project(c, x, y, z, xp)
-        return u, v, ok & (z >= (c.cos_max_angle - RAY_SLACK) * xp.sqrt(x * x + y * y + z * z))
+        ok = ok & (z >= (c.cos_max_angle - RAY_SLACK) * xp.sqrt(x * x + y * y + z * z))
+        return u, v, ok if self.blind is None else ok & outside(c.blind, x, y, z, RAY_SLACK)
 
     def unproject_formula(self, c: Any, u: Any, v: Any, xp: Formulas) -> tuple[Any, Any, Any, Any]:
         x, y, z, ok = lens_named(self.model).unproject(c, u, v, xp)
-        return x, y, z, ok & (z >= c.cos_max_angle - PIXEL_SLACK)
+        ok = ok & (z >= c.cos_max_angle - PIXEL_SLACK)
+        return x, y, z, ok if self.blind is None else ok & outside(c.blind, x, y, z, PIXEL_SLACK)
+
+    @cached_property
+    def whole(self) -> Camera:
+        """The camera with its blind part seen, see `blind`; itself where there is none."""
+        return self if self.blind is None else replace(self, blind=None)
 
     def contains(self, pixels: ArrayLike) -> BoolArray:
         """Mask [...] of the pixels [..., 2] that lie on the image, its outer half pixels included."""
@@ -109,27 +124,33 @@ class Camera(Projection):
         pixels, ok = self.project(rays)
         return ok & self.contains(pixels)
 
+    def rim(self, points: int) -> FloatArray:
+        """Pixels [4 points, 2] along the image's edge, half a pixel out, its corners among them."""
+        right, bottom = self.width - 0.5, self.height - 0.5
+        u, v = np.linspace(-0.5, right, points), np.linspace(-0.5, bottom, points)
+        sides = ((u, -0.5), (u, bottom), (-0.5, v), (right, v))
+        return np.concatenate([np.stack(np.broadcast_arrays(*side), axis=-1) for side in sides])
+
     @property
     def fov_deg(self) -> float:
         """Field of view, degrees: twice the largest angle from the axis at which the image shows anything.
+
+        That of the whole lens, its blind part included.
 
         >>> import rectbench as rb
         >>> round(rb.load_rig("bumblebee2").left.fov_deg), round(rb.load_rig("t265").left.fov_deg)
         (88, 160)
         """
-        (centre,), _ = self.project([[0.0, 0.0, 1.0]])
-        right, bottom = self.width - 0.5, self.height - 0.5
-        u, v = np.linspace(-0.5, right, _RIM_POINTS), np.linspace(-0.5, bottom, _RIM_POINTS)
-        sides = ((u, -0.5), (u, bottom), (-0.5, v), (right, v))
-        rim = np.concatenate([np.stack(np.broadcast_arrays(*side), axis=-1) for side in sides])
-        rays, ok = self.unproject(rim)
+        (centre,), _ = self.whole.project([[0.0, 0.0, 1.0]])
+        rim = self.rim(_RIM_POINTS)
+        rays, ok = self.whole.unproject(rim)
         if not ok.all():  # the image circle ends before the rim does; its edge is found by halving
             outer, inner = rim[~ok], np.broadcast_to(centre, rim[~ok].shape)
             for _ in range(_HALVINGS):
                 middle = (outer + inner) / 2
-                seen = self.unproject(middle)[1][:, None]
+                seen = self.whole.unproject(middle)[1][:, None]
                 outer, inner = np.where(seen, outer, middle), np.where(seen, middle, inner)
-            rays = np.concatenate([rays[ok], self.unproject(inner)[0]])
+            rays = np.concatenate([rays[ok], self.whole.unproject(inner)[0]])
         x, y, z = rays.T
         return round(float(2 * np.degrees(np.arctan2(np.hypot(x, y), z).max())), 6)
 

@@ -40,7 +40,7 @@ def equal_cameras(camera: Camera) -> list[Camera]:
         equal = waiting.pop(0)
         for model, params in RULES[equal.model](equal.params) if equal.model in RULES else ():
             if model not in found:
-                found[model] = Camera(model, camera.size, params, camera.max_angle_deg)
+                found[model] = Camera(model, camera.size, params, camera.max_angle_deg, camera.blind)
                 waiting.append(found[model])
     return list(found.values())
 

@@ -104,7 +104,8 @@ def _slopes(camera: Camera, name: str) -> Constants:
     more, less = (derive(SimpleNamespace(**_changed(camera, {name: move}))) for move in (step, -step))
     own = {key: _like(held, 0.0) for key, held in camera.params.items()}
     own[whole] = tuple(float(i == int(place)) for i in range(len(value))) if place else 1.0
-    return {**own, **_difference(more, less, 2 * step), "cos_max_angle": 0.0}
+    fixed = {name: held for name, held in camera.constants.items() if name in ("cos_max_angle", "blind")}
+    return {**own, **_difference(more, less, 2 * step), **_difference(fixed, fixed, 1.0)}
 
 
 def _difference(a: Any, b: Any, step: float) -> Any:

@@ -28,7 +28,7 @@ def opaque(tree: Any) -> Any:
         return SimpleNamespace(**{name: opaque(value) for name, value in tree.items()})
     if isinstance(tree, tuple):
         return tuple(opaque(value) for value in tree)
-    variable = Float64(float(tree))
+    variable = Float64(tree if isinstance(tree, np.ndarray) else float(tree))
     dr.make_opaque(variable)
     return variable
 

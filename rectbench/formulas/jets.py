@@ -164,6 +164,12 @@ class JetNamespace(Formulas):
     def isfinite(self, x: Any, /) -> Any:
         return self.xp.isfinite(constant(x).value)
 
+    def interval(self, knots: Any, x: Any, /) -> Jet:
+        return Jet(self.xp.interval(constant(knots).value, constant(x).value))
+
+    def take(self, table: Any, number: Any, /) -> Jet:
+        return Jet(self.xp.take(constant(table).value, constant(number).value))
+
     def where(self, condition: Any, x: Any, y: Any, /) -> Jet:
         a, b = constant(x), constant(y)
         zeros = tuple(0.0 for _ in a.partials or b.partials)

@@ -22,7 +22,11 @@ def _functions_of(module: ModuleType, own: Mapping[str, Callable[..., Any]]) -> 
     return formulas
 
 
-NUMPY = _functions_of(np, {})
+def _interval(knots: Any, x: Any) -> Any:
+    return np.clip(np.searchsorted(knots, x, side="right") - 1, 0, len(knots) - 2)
+
+
+NUMPY = _functions_of(np, {"interval": _interval, "take": lambda table, number: table[number]})
 
 
 def is_number(x: Any) -> bool:
@@ -35,7 +39,7 @@ def drjit_namespace() -> Formulas:
     """The language on Dr.Jit's float64 arrays; what Dr.Jit lacks, or takes otherwise, is stated here."""
     llvm.require()
     import drjit as dr
-    from drjit.llvm import Float64
+    from drjit.llvm import Float64, UInt32
 
     def where(condition: Any, x: Any, y: Any) -> Any:
         return dr.select(condition, Float64(x) if is_number(x) else x, y)
@@ -53,7 +57,20 @@ def drjit_namespace() -> Formulas:
     def expm1(x: Any) -> Any:
         return dr.select(dr.abs(x) < 1.0, 2.0 * dr.sinh(0.5 * x) * dr.exp(0.5 * x), dr.exp(x) - 1.0)
 
+    def interval(knots: Any, x: Any) -> Any:
+        def halved(low: Any, high: Any) -> tuple[Any, Any]:
+            middle = (low + high) >> 1
+            above = dr.gather(Float64, knots, middle) <= x
+            return dr.select(above, middle, low), dr.select(above, high, middle)
+
+        # The table's length is no literal: one kernel serves all of them.
+        first = dr.zeros(UInt32, dr.width(x))
+        ends = first, first + dr.opaque(UInt32, dr.width(knots) - 1)
+        return dr.while_loop(ends, lambda low, high: high - low > 1, halved)[0]
+
     own: dict[str, Callable[..., Any]] = {
+        "interval": interval,
+        "take": lambda table, number: dr.gather(Float64, table, number),
         "where": where,
         "hypot": lambda x, y: dr.sqrt(x * x + y * y),  # dr.hypot guards against overflow: no ray comes near
         "pow": dr.power,

@@ -12,6 +12,7 @@ carry derivatives through it. A choice between two values is `xp.where`, never `
 | order | `abs sign floor minimum maximum`, `where isfinite` |
 | continuous at 0 | `sinc cosc tanc atanc sinhc`: a quotient that has a limit there, with its derivative |
 | curves | `polynomial piecewise spline` |
+| tables | `interval take`, of constants that are arrays |
 
 Values and partial derivatives agree on all namespaces to some 1e-13, at the limits too, and NaN stays NaN.
 Where a function has no slope (the root at 0, asin at ±1), its partials are infinite or NaN. Dr.Jit, which
@@ -117,6 +118,16 @@ class ArrayFunctions(Protocol):
     def isfinite(self, x: Any, /) -> Any:
         """The mask of what is neither NaN nor infinite."""
 
+    def interval(self, knots: Any, x: Any, /) -> Any:
+        """The number i of the interval that x lies in, knots[i] ≤ x < knots[i + 1]; of the outer ones beyond.
+
+        `knots` is a constant that is an array of two or more rising numbers. Found by halving, so that
+        thousands of knots cost little more than ten. Of NaN any interval.
+        """
+
+    def take(self, table: Any, number: Any, /) -> Any:
+        """table[number], entry by entry: of a constant that is an array, at numbers of an `interval`."""
+
 
 class Formulas(ArrayFunctions, Protocol):
     """All functions of the language: those of the arrays, and what follows from them on every namespace.
@@ -168,7 +179,8 @@ class Formulas(ArrayFunctions, Protocol):
 
         One tuple of coefficients an interval, all of one length; knots rise. Beyond the outer knots the
         outer polynomials go on. SciPy's piecewise polynomials hold the same: `p.x` and `p.c[::-1].T`. Each
-        knot costs every element a choice, so that some tens of them are a good number.
+        knot costs every element a choice, so that some tens of them are a good number; `interval` and `take`
+        serve more.
         """
         inner = knots[1:-1]
         start = self.piecewise(inner, knots[:-1], x)

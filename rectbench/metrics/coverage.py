@@ -15,12 +15,16 @@ from rectbench.warps.lookup.resampling import SIDES, Side
 from rectbench.warps.lookup.tables import Table, reads_source
 from rectbench.warps.rectification import in_frame
 
+TRIMMED = "trimmed"
+"""The column that is there where anything is trimmed."""
+
 
 def coverage(rect: Rectification, rig: Rig) -> dict[str, float]:
     """Shares kept of the source pixels, of their solid angle, of the overlap; share of output valid.
 
-    Each is the mean of both images. The overlap is what the other camera sees too, of points at
-    infinity.
+    Each is the mean of both images, of all that the rig's lenses show. The overlap is what the other camera
+    sees too, of points at infinity. `trimmed` is there where anything of the view is: the share of the source
+    pixels that lie so near to the epipoles that the rectification starts without them.
 
     >>> import rectbench as rb
     >>> rig = rb.load_rig("t265")
@@ -37,7 +41,9 @@ def coverage_of(rect: Rectification, seen: SeenView, tables: Mapping[Side, Table
     pixels, solid_angle, overlap = np.mean([_kept_shares(*side, rect.size) for side in sides], axis=0)
     valid = [reads_source(*tables[side], rect.warp(side).source.size).mean() for side in SIDES]
     source_pixels = np.mean([math.prod(warp.source.size) for warp in (rect.left, rect.right)])
+    trimmed = float(np.mean([_trimmed_share(*side) for side in sides]))
     return {
+        **({TRIMMED: trimmed} if trimmed else {}),
         "coverage_pixels": float(pixels),
         "coverage_solid_angle": float(solid_angle),
         "coverage_overlap": float(overlap),
@@ -54,6 +60,12 @@ def _kept_shares(warp: Warp, seen: SeenPixels, size: tuple[int, int]) -> tuple[f
         float(seen.solid_angle_sr[kept].sum() / seen.solid_angle_sr.sum()),
         float(overlap),
     )
+
+
+def _trimmed_share(warp: Warp, seen: SeenPixels) -> float:
+    if warp.source.blind is None:
+        return 0.0
+    return float(1 - warp.source.unproject(seen.pixels)[1].mean())
 
 
 class Coverage(Metric):
@@ -91,6 +103,13 @@ class Coverage(Metric):
             "Share of the output that shows anything.",
             shown="pairs",
             promised=True,
+        ),
+        Column.share(
+            TRIMMED,
+            "trimmed",
+            None,
+            "Share of source pixels nearer to the epipoles than the margin, where rows meet: no method is "
+            "given these. They count as pixels that are not kept.",
         ),
         Column(
             "output_pixels_per_source_pixel",

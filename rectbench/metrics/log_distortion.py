@@ -7,7 +7,7 @@ import math
 from rectbench.metrics.distortion import distortion_column
 from rectbench.metrics.row_misfit import case_row_misfit, row_misfit
 from rectbench.plugins.metric import Case, Column, Metric, Tolerance
-from rectbench.rigs import Rig
+from rectbench.rigs import MARGIN_DEG, Rig
 from rectbench.scored import SHARES, Delivered, ScoredView
 from rectbench.warps import Rectification
 from rectbench.warps.jacobians import Jacobians, LogStretches
@@ -46,7 +46,7 @@ def log_distortion_on_view(rect: Rectification, rig: Rig, share: float = RANKING
     >>> log_distortion_on_view(rb.rectify(rig, method="conventional"), rig)
     nan
     """
-    delivered = Delivered.of(rect, ScoredView.of(rig))
+    delivered = Delivered.of(rect, ScoredView.of(rig, margin_deg=rect.rig.margin_deg or MARGIN_DEG))
     return delivered.log_distortion(share) if row_misfit(rect, delivered, rig).rectifies else math.nan
 
 

@@ -70,7 +70,7 @@ def row_error(rect: Rectification, px_left: ArrayLike, px_right: ArrayLike) -> R
         raise InvalidInput(f"px_left has shape {left.shape}, px_right {right.shape}; expected the same")
     mapped = rect.left.forward(left), rect.right.forward(right)
     shown = in_frame(mapped[0], rect.size) & in_frame(mapped[1], rect.size)
-    error = np.where(shown, np.abs(mapped[0][..., 1] - mapped[1][..., 1]), np.nan)
+    error = np.where(shown, np.abs(rect.rows_apart(mapped[0][..., 1], mapped[1][..., 1])), np.nan)
     gradients = [
         np.hypot(J[..., 1, 0], J[..., 1, 1]) for J in (rect.left.jacobian(left), rect.right.jacobian(right))
     ]

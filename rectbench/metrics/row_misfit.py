@@ -110,7 +110,7 @@ def _misfit(rect: Rectification, delivered: Delivered, rig: Rig) -> float:
         for side, px in zip(SIDES, matches, strict=True)
     )
     source_px_per_row = (left.source_px_per_row + right.source_px_per_row) / 2
-    errors = np.abs(left.rows - right.rows) * source_px_per_row + left.off_px + right.off_px
+    errors = np.abs(rect.rows_apart(left.rows, right.rows)) * source_px_per_row + left.off_px + right.off_px
     kept = ASKED_SHARE * delivered.kept_share
     asked = delivered.left.scored.within(matches[0], kept) & delivered.right.scored.within(matches[1], kept)
     found = np.where(np.isfinite(errors), errors, math.inf)[asked | np.isfinite(errors)]

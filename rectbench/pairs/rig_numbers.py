@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from typing import Any
 
 from rectbench.cameras import Camera
@@ -25,4 +26,5 @@ def _camera_numbers(camera: Camera) -> dict[str, Any]:
         "size": list(camera.size),
         "params": {name: list(v) if isinstance(v, tuple) else v for name, v in camera.params.items()},
         "max_angle_deg": camera.max_angle_deg,
+        **({} if camera.blind is None else {"blind": asdict(camera.blind)}),
     }

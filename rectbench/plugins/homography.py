@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
@@ -110,8 +110,8 @@ class HomographyRectifier(Rectifier[OptionsT]):
 
     def fit(self, problem: Problem, options: OptionsT) -> Rectification:
         """The homographies of the undistorted views, composed with the lenses."""
-        refuse_epipole_in_view(problem.rig)
         view = PinholeView.of(problem)
+        _require_no_epipole(problem.rig, view.camera)
         H_left, H_right, notes = self.homographies(view, options)
         centring = _centring(view.centre, H_left, H_right)
         warps = [
@@ -120,6 +120,18 @@ class HomographyRectifier(Rectifier[OptionsT]):
         ]
         stated = {"view_fov_deg": view.fov_deg, "view_matches": float(len(view.matches.left))}
         return Rectification(problem.rig, warps[0], warps[1], view.size, {**notes, **stated})
+
+
+def _require_no_epipole(rig: Rig, view: Camera) -> None:
+    """Raise Unsupported where the undistorted views show an epipole: no homography sends it to infinity
+    without sending there what is about it."""
+    try:
+        refuse_epipole_in_view(replace(rig, left=view, right=view))
+    except Unsupported:
+        raise Unsupported(
+            "an epipole lies in the undistorted view, which no homography can rectify; expected a method "
+            "that works from the pose"
+        ) from None
 
 
 def _centring(centre: FloatArray, H_left: FloatArray, H_right: FloatArray) -> FloatArray:

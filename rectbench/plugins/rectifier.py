@@ -15,11 +15,12 @@ from typing_extensions import TypeVar
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
 from rectbench.registry.kind import Described, Kind, described_object
-from rectbench.rigs import Rig
+from rectbench.rigs import MARGIN_DEG, Rig
 from rectbench.types import FloatArray, Images, Matches
 from rectbench.warps.frame import rectifying_rotations
 from rectbench.warps.rectification import Rectification
 from rectbench.warps.targets import ANGLES
+from rectbench.warps.view.overlap import require_overlap
 from rectbench.warps.view.sampling import evaluation_pixels
 from rectbench.warps.warp import Warp
 
@@ -63,7 +64,9 @@ class Problem:
     """
 
     rig: Rig
-    """The rig as calibrated or estimated, which may be off."""
+    """The rig as calibrated or estimated, which may be off; blind about its epipoles where it sees any.
+
+    `rig.whole` is the same with all that the lenses show, for maps that keep the epipoles apart."""
     pixels_left: FloatArray
     """[N, 2] source pixels whose distortion counts."""
     pixels_right: FloatArray
@@ -91,11 +94,15 @@ def pose_problem(
     matches: Matches | None = None,
     images: Images | None = None,
     seed: int = 0,
+    margin_deg: float = MARGIN_DEG,
 ) -> Problem:
     """The problem for a rig; what is left out is the usual: evaluation pixels, matches made from the pose.
 
-    Of given pixels each image uses those its lens sees; InvalidInput where it sees none.
+    The rig is trimmed by the margin, see `Rig.trimmed`. Of given pixels each image uses those its lens sees;
+    InvalidInput where it sees none. Raises Unsupported where the two views have nothing in common.
     """
+    rig = rig.trimmed(margin_deg)
+    require_overlap(rig)
     left, right = (_pixels_of(getattr(rig, side), pixels, side) for side in ("left", "right"))
     return Problem(rig, left, right, matches, images, seed)
 

@@ -16,12 +16,15 @@ class CannotHold(InvalidInput):
 
 
 def lost_angles(rig: Rig) -> list[str]:
-    """What a format without a place for `max_angle_deg` leaves out of a rig, a line a camera."""
-    return [
-        f"leaves out the {side} camera's max_angle_deg = {camera.max_angle_deg:g}"
-        for side, camera in (("left", rig.left), ("right", rig.right))
-        if camera.max_angle_deg is not None
-    ]
+    """What a format without a place for `max_angle_deg` and `blind` leaves out of a rig, a line for each."""
+    lost = []
+    for side, camera in (("left", rig.left), ("right", rig.right)):
+        if camera.max_angle_deg is not None:
+            lost.append(f"leaves out the {side} camera's max_angle_deg = {camera.max_angle_deg:g}")
+        if camera.blind is not None:
+            cones = f"{camera.blind.within_deg:g} degrees about a line"
+            lost.append(f"leaves out that the {side} camera is blind within {cones}")
+    return lost
 
 
 @dataclass(frozen=True)

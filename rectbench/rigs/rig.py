@@ -10,7 +10,7 @@ from typing import Any, ClassVar, Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rectbench.cameras import Camera
+from rectbench.cameras import Camera, Cones
 from rectbench.cameras.projection import as_points
 from rectbench.errors import InvalidInput
 from rectbench.types import FloatArray
@@ -20,6 +20,12 @@ ROTATION_TOLERANCE = 1e-5
 
 EXACT_ROTATION = 1e-14
 """Below this RᵀR - 1 is float64 rounding, and the matrix is kept to the last bit."""
+
+
+MARGIN_DEG = 7.0
+WIDEST_MARGIN_DEG = 45.0
+RIM_POINTS = 257
+"""On each side of an image, to tell whether a corner of it reaches into the cones."""
 
 
 class RigWriter(Protocol):
@@ -77,6 +83,10 @@ class Rig:
             and np.array_equal(self.R_right_left, other.R_right_left)
             and np.array_equal(self.t_right_left, other.t_right_left)
         )
+
+    def __hash__(self) -> int:
+        pose = np.append(self.R_right_left, self.t_right_left) + 0.0  # 0 and -0 are equal
+        return hash((self.left, self.right, pose.tobytes()))
 
     @property
     def baseline_m(self) -> float:
@@ -151,6 +161,41 @@ class Rig:
         left, right = (replace(camera, max_angle_deg=max_angle_deg) for camera in (self.left, self.right))
         return replace(self, left=left, right=right)
 
+    def trimmed(self, margin_deg: float = MARGIN_DEG) -> Rig:
+        """The same rig, its lenses blind about the epipoles: where rows meet, no map can keep them apart.
+
+        Each camera that sees anything within `margin_deg` of the baseline's direction, or of the opposite
+        one, is made blind there, see `Camera.blind`; another one stays what it is. Raises InvalidInput for a
+        margin outside (0, 45].
+
+        >>> import rectbench as rb
+        >>> rig = rb.load_rig("t265").whole
+        >>> ahead = rb.Rig(rig.left, rig.right, np.eye(3), t_right_left=[0.0, 0.0, -0.1])
+        >>> ahead.trimmed(10).right.blind
+        Cones(axis=(0.0, 0.0, 1.0), within_deg=10.0)
+        >>> ahead.trimmed(10).whole == ahead
+        True
+        """
+        margin_deg = checked_margin(margin_deg)
+        whole = self.whole
+        towards = whole.centre_right_in_left / whole.baseline_m
+        left = _blind_about(whole.left, towards, margin_deg)
+        right = _blind_about(whole.right, whole.R_right_left @ towards, margin_deg)
+        return replace(whole, left=left, right=right)
+
+    @property
+    def margin_deg(self) -> float | None:
+        """Within what of the epipoles its lenses are blind, degrees; None where neither is, see `trimmed`."""
+        blind = [camera.blind.within_deg for camera in (self.left, self.right) if camera.blind is not None]
+        return max(blind, default=None)
+
+    @property
+    def whole(self) -> Rig:
+        """The same rig with all that its lenses show, see `trimmed`; itself where nothing is trimmed."""
+        left, right = self.left.whole, self.right.whole
+        same = left is self.left and right is self.right
+        return self if same else replace(self, left=left, right=right)
+
     def save(self, path: str | os.PathLike[str], format: str = "native") -> tuple[Path, ...]:
         """Write the rig's calibration; what was there before stays until all of it is written.
 
@@ -175,6 +220,24 @@ class Rig:
         'kannala-brandt'
         """
         return Rig.writer(self, path, format)
+
+
+def checked_margin(margin_deg: Any) -> float:
+    """The margin as a float; InvalidInput for what is no angle above 0 and up to 45 degrees."""
+    is_real = isinstance(margin_deg, int | float | np.number) and not isinstance(margin_deg, bool)
+    if not is_real or not 0 < margin_deg <= WIDEST_MARGIN_DEG:
+        raise InvalidInput(
+            f"margin_deg is {margin_deg!r}; expected degrees above 0, at most {WIDEST_MARGIN_DEG:g}"
+        )
+    return float(margin_deg)
+
+
+def _blind_about(camera: Camera, direction: FloatArray, margin_deg: float) -> Camera:
+    """The camera, blind about this line if it sees anything there."""
+    cones = Cones(tuple(direction.tolist()), margin_deg)
+    rays, seen = camera.unproject(camera.rim(RIM_POINTS))
+    reaches = camera.sees(cones.rays()).any() or cones.hold(rays[seen]).any()
+    return replace(camera, blind=cones) if reaches else camera
 
 
 @np.errstate(over="ignore", invalid="ignore")

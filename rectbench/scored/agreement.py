@@ -34,6 +34,8 @@ FOUND_SHARE = 0.99
 """Of the pixels that are mapped into the frame as many are found in the table."""
 HELD_SHARE = 0.95
 """The pieces of a table hold as much of the view as its pixels say, but for rims."""
+LEAST_KEPT = 100
+"""Scored pixels; fewer are all rim."""
 ROUNDING_PX = 0.1
 CLOSURE_PX = 1e-3
 """inverse(forward(x)) is this near to x."""
@@ -57,14 +59,15 @@ def check_agreement(rect: Rectification, delivered: Delivered) -> None:
         _check_enough(side, scored.pieces)
         _check_unfolded(side, scored.pieces)
         _check_holes(side, scored)
-        places = _places(side, warp, rect.size, scored, rng)
+        places = _places(side, warp, rect.size, scored, rect.turn_px, rng)
         places.require(_determinants(places.by_differences) > 0, FOLDED)
         _check_inverse(warp, places)
         _check_jacobian(warp, places)
         _check_table(places, scored.delivered)
         sheet = scored.pieces.sheet
         if sheet.scale != (1.0, 1.0):
-            places = _places(side, sheet.warp, sheet.size, scored, rng)
+            turn_px = None if rect.turn_px is None else rect.turn_px * sheet.scale[1]
+            places = _places(side, sheet.warp, sheet.size, scored, turn_px, rng)
             _check_table(places, sheet)
         _check_distortion(places, scored.pieces)
 
@@ -106,7 +109,7 @@ def _check_holes(side: Side, delivered: DeliveredSide) -> None:
         )
     kept = delivered.kept / max(1, len(delivered.shown))
     held = float(delivered.shares(kept).sum())
-    if held < HELD_SHARE * kept:
+    if delivered.kept >= LEAST_KEPT and held < HELD_SHARE * kept:
         raise InvalidResult(
             f"the {side} lookup table shows {held:.0%} of the view where each of its pixels looked at says "
             f"{kept:.0%}: the image has holes"
@@ -138,14 +141,19 @@ class _Places:
 
 
 def _places(
-    side: Side, warp: Warp, size: tuple[int, int], delivered: DeliveredSide, rng: np.random.Generator
+    side: Side,
+    warp: Warp,
+    size: tuple[int, int],
+    delivered: DeliveredSide,
+    turn_px: float | None,
+    rng: np.random.Generator,
 ) -> _Places:
     scored = delivered.scored
     chosen = np.flatnonzero(delivered.shown)
     if len(chosen) > PLACES:
         chosen = np.sort(rng.choice(chosen, PLACES, replace=False))
     pixels = scored.redrawn(chosen, rng)
-    px_rect, jacobians = differences(warp, pixels, DERIVATIVE_ARM_PX)
+    px_rect, jacobians = differences(warp, pixels, DERIVATIVE_ARM_PX, turn_px)
     there = in_frame(px_rect, size) & np.isfinite(jacobians).all(axis=(1, 2))
     if len(there) and there.mean() < SHOWN_SHARE:
         raise InvalidResult(

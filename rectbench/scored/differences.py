@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from rectbench.types import FloatArray
+from rectbench.warps.rectification import across_seam
 from rectbench.warps.warp import Warp
 
 ARM_PX = 0.5
@@ -12,10 +13,13 @@ ARM_PX = 0.5
 CROSS = np.array([[0.0, 0.0], [-1.0, 0.0], [1.0, 0.0], [0.0, -1.0], [0.0, 1.0]])
 
 
-def differences(warp: Warp, pixels: FloatArray, arm_px: float = ARM_PX) -> tuple[FloatArray, FloatArray]:
+def differences(
+    warp: Warp, pixels: FloatArray, arm_px: float = ARM_PX, turn_px: float | None = None
+) -> tuple[FloatArray, FloatArray]:
     """Where pixels [N, 2] go, [N, 2], and the derivative there by differences over two arms, [N, 2, 2].
 
-    At the end of a map's domain the difference is over the one arm that there is.
+    At the end of a map's domain the difference is over the one arm that there is. Across the seam of rows
+    that begin again after `turn_px`, see `Rectification.turn_px`, it is what it is beside it.
     """
     middle, *arms = np.moveaxis(warp.forward(pixels[:, None] + arm_px * CROSS), 1, 0)
     columns = []
@@ -23,5 +27,7 @@ def differences(warp: Warp, pixels: FloatArray, arm_px: float = ARM_PX) -> tuple
         known = [np.isfinite(arm) for arm in ends]
         first, last = (np.where(there, arm, middle) for there, arm in zip(known, ends, strict=True))
         with np.errstate(invalid="ignore", divide="ignore"):
-            columns.append((last - first) / (arm_px * (known[0].astype(float) + known[1])))
+            step = last - first
+            step[:, 1] = across_seam(step[:, 1], turn_px)
+            columns.append(step / (arm_px * (known[0].astype(float) + known[1])))
     return middle, np.stack(columns, axis=-1)

@@ -14,6 +14,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from rectbench.cameras import Camera
 from rectbench.types import BoolArray, FloatArray
 from rectbench.warps.lookup.tables import OUTSIDE, Table, lookup_table
 from rectbench.warps.targets import Framed
@@ -207,9 +208,25 @@ def _shows(quads: Sequence[FloatArray], whole: BoolArray, sheet: Sheet) -> BoolA
     low, high = np.minimum.reduce(quads), np.maximum.reduce(quads)
     with np.errstate(invalid="ignore"):
         shows: BoolArray = np.all((high > -0.5) & (low < np.array(camera.size)[:, None, None] - 0.5), axis=0)
+    _drop_far_sides(shows, quads, high - low, camera)
     rim = shows & ~whole
     shows[rim] = camera.unproject(np.mean([corner[:, rim] for corner in quads], axis=0).T)[1]
     return shows
+
+
+def _drop_far_sides(
+    shows: BoolArray, quads: Sequence[FloatArray], extents: FloatArray, camera: Camera
+) -> None:
+    """Of the quads that seem to show the source, those that show none of it are told so.
+
+    About the direction straight back a model may have pixels all around the image, and a quad there seems to
+    hold the image. What it shows is what lies between the rays of its corners.
+    """
+    large = np.argwhere(shows & np.any(extents > np.array(camera.size)[:, None, None] / 2, axis=0))
+    corners = np.stack([corner[:, large[:, 0], large[:, 1]].T for corner in quads])
+    off = ~camera.contains(corners).any(axis=0)
+    rays = np.nansum(camera.whole.unproject(corners[:, off])[0], axis=0)
+    shows[tuple(large[off].T)] = camera.whole.sees(rays)
 
 
 def _spread(side: int, spacing: float) -> NDArray[np.intp]:

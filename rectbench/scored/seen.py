@@ -66,10 +66,10 @@ class SeenView:
 
     @classmethod
     def of(cls, rig: Rig) -> SeenView:
-        """What the lenses of a rig see."""
+        """What the lenses of a rig see, whatever of it is trimmed."""
+        left, right = rig.left.whole, rig.right.whole
         return cls(
-            SeenPixels.of(rig.left, rig.right, rig.R_right_left),
-            SeenPixels.of(rig.right, rig.left, rig.R_right_left.T),
+            SeenPixels.of(left, right, rig.R_right_left), SeenPixels.of(right, left, rig.R_right_left.T)
         )
 
 

@@ -17,7 +17,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from rectbench.cameras import Camera
 from rectbench.cameras.projection import as_points
-from rectbench.rigs import Rig
+from rectbench.rigs import MARGIN_DEG, Rig
+from rectbench.rigs.rig import WIDEST_MARGIN_DEG, checked_margin
 from rectbench.store.keys import derived_seed
 from rectbench.types import BoolArray, FloatArray
 from rectbench.warps.lookup.resampling import Side
@@ -28,6 +29,8 @@ MIDDLE_PIXELS = 2_000
 """Source pixels an image by which the middle of the view is found."""
 SHARES = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.75, 0.8, 0.9, 0.95, 1.0)
 """The shares of the view that rows tell of."""
+SLACK_DEG = 1.0
+"""Beyond what is trimmed about the true epipoles as much is not scored; at most the margin once more."""
 LEAST_REACH_PX = 0.5
 EDGES_PX = 0.5 * np.array([[-1.0, 0.0], [1.0, 0.0], [0.0, -1.0], [0.0, 1.0]])
 ROW_POINTS = 513
@@ -62,7 +65,7 @@ class ScoredPixels:
         # To pixel centres at the image's edge, as far as its rows and columns reach.
         pixels = np.clip(_jittered(corners, cell_px, rng), 0, np.array(camera.size) - 1)
         pixels = pixels[_wholly_seen(camera, pixels)]
-        middle, seen = camera.project(ray)
+        middle, seen = camera.whole.project(ray)
         if not seen:  # cameras that look apart have no common middle
             middle = (np.array(camera.size) - 1) / 2
         reach = np.abs(pixels - middle).max(axis=0, initial=LEAST_REACH_PX)
@@ -104,7 +107,7 @@ class ScoredPixels:
         Steps are added up, so that it may pass 180°.
         """
         places = np.linspace(-1.0, 1.0, ROW_POINTS)
-        rays, _ = self.camera.unproject(self.middle + places[:, None] * np.array([self.reach[0], 0.0]))
+        rays, _ = self.camera.whole.unproject(self.middle + places[:, None] * np.array([self.reach[0], 0.0]))
         steps = 2 * np.arcsin(np.linalg.norm(np.diff(rays, axis=0), axis=-1) / 2)
         return places, np.concatenate([[0.0], np.cumsum(np.nan_to_num(steps))])
 
@@ -131,8 +134,14 @@ class ScoredView:
     right: ScoredPixels
 
     @classmethod
-    def of(cls, rig: Rig, count: int = SCORED_PIXELS) -> ScoredView:
-        """That of a rig, of about `count` pixels an image."""
+    def of(cls, rig: Rig, count: int = SCORED_PIXELS, margin_deg: float = MARGIN_DEG) -> ScoredView:
+        """That of a rig, of about `count` pixels an image.
+
+        What is trimmed of it by the margin is not scored, nor a seam about that, so that a method which was
+        told a pose a little off can show all that is.
+        """
+        margin_deg = checked_margin(margin_deg)
+        rig = rig.trimmed(min(margin_deg + min(SLACK_DEG, margin_deg), WIDEST_MARGIN_DEG))
         middle = view_middle(rig)
         return cls(
             ScoredPixels.of(rig.left, middle, count),

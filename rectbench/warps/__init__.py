@@ -8,8 +8,10 @@ from rectbench.warps.frame import centre_resolution_px as centre_resolution_px
 from rectbench.warps.frame import rectifying_rotations as rectifying_rotations
 from rectbench.warps.frame import refuse_epipole_in_view as refuse_epipole_in_view
 from rectbench.warps.lookup.resampling import Resampler as Resampler
+from rectbench.warps.monotone_spline import MonotoneSpline as MonotoneSpline
 from rectbench.warps.opencv_form import OpenCVForm as OpenCVForm
 from rectbench.warps.opencv_form import opencv_form as opencv_form
+from rectbench.warps.planar_polar import PlanarPolar as PlanarPolar
 from rectbench.warps.profiles import Cubic as Cubic
 from rectbench.warps.profiles import Profile as Profile
 from rectbench.warps.profiles import Radial as Radial
@@ -24,6 +26,7 @@ from rectbench.warps.view.extent import perspective_size as perspective_size
 from rectbench.warps.view.extent import view_angles as view_angles
 from rectbench.warps.view.framing import Framing as Framing
 from rectbench.warps.view.framing import framed as framed
+from rectbench.warps.view.perspective import PerspectiveFrame as PerspectiveFrame
 from rectbench.warps.view.sampling import evaluation_pixels as evaluation_pixels
 from rectbench.warps.view.sampling import outline_pixels as outline_pixels
 from rectbench.warps.warp import Warp as Warp

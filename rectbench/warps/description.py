@@ -27,6 +27,8 @@ from rectbench.calibrations.formats.native import read_fields, rig_fields
 from rectbench.errors import InvalidInput, UnknownName
 from rectbench.warps.fitted_profiles import Composed, PolynomialInverse
 from rectbench.warps.frame import signed_baseline_m
+from rectbench.warps.monotone_spline import MonotoneSpline
+from rectbench.warps.planar_polar import PlanarPolar
 from rectbench.warps.profiles import Cubic, FramedProfile, Profile, Radial
 from rectbench.warps.rectification import Rectification
 from rectbench.warps.targets import Epipolar, Framed, Perspective, Target
@@ -45,14 +47,21 @@ HEADER = """\
 # 2. R_rect_cam turns the ray into the rectified frame, whose x axis is the baseline: (x, y, z).
 # 3. The target maps it to the rectified pixel (u, v):
 #      perspective   (u, v, 1) ~ matrix (x, y, z), where the third coordinate is above 0
+#      planar-polar  matrix (x, y, z) ~ (a, b, 1) is a pixel of a plane, matrix (1, 0, 0) its epipole, and r
+#                    the distance of the pixel from the epipole; with rho that of the reference pixel,
+#                    u = start_px -+ (r - rho) (along: length) or start_px -+ rho log(r / rho) (logarithm),
+#                    - where the third coordinate of matrix (1, 0, 0) is above 0; v of beta as below
 #      epipolar      u of gamma = atan2(x, hypot(y, z)), the angle along the epipolar line, and
 #                    v of beta = atan2(y, z), the angle across the lines, both in radians:
 #        cubic       c0 + c1 a + c2 a^2 + c3 a^3, rising from a = low to a = high
 #        radial      centre_px + focal_px r(a), r(a) = a (equidistant), 2 tan(a/2) (stereographic),
-#                    2 sin(a/2) (equisolid), sin a (orthographic), tan a (cylindrical)
+#                    2 sin(a/2) (equisolid), sin a (orthographic), tan a (cylindrical),
+#                    artanh(sin a) (mercator)
 #        composed    the outer profile of the inner one's value in the place of a
 #        polynomial-inverse   a = q0 + q1 x + q2 x^2 + ... (the coefficients), where x goes from -1 at
 #                    value_low to 1 at value_high
+#        monotone-spline   value_low + the integral, from the first of the knots, of the quadratic spline
+#                    with these knots and control values (slopes); the outer knots are repeated thrice
 #
 # Rows of the two images correspond: v is the same in both. Disparity is u_left - u_right. With gamma_left
 # and gamma_right of two matched pixels, beta of their row and baseline_m = b (below 0 where the right
@@ -142,7 +151,9 @@ class Field:
 NUMBER = Field(float, lambda section, key: section.number(key, "a number"))
 TEXT = Field(str, lambda section, key: section.text(key, "a word"))
 MATRIX = Field(lambda matrix: matrix.tolist(), lambda section, key: section.matrix(key, "a 3x3 matrix", 3, 3))
-NUMBERS = Field(list, lambda section, key: tuple(section.numbers(key, "numbers")))
+NUMBERS = Field(
+    lambda numbers: [float(n) for n in numbers], lambda section, key: tuple(section.numbers(key, "numbers"))
+)
 TARGET = Field(
     lambda target: _fields(target, TARGETS),
     lambda section, key: _read(section.section(key, "a target"), "target", TARGETS),
@@ -158,6 +169,10 @@ Kinds = Mapping[str, tuple[type, Mapping[str, Field]]]
 TARGETS: Kinds = {
     "perspective": (Perspective, {"matrix": MATRIX}),
     "epipolar": (Epipolar, {"u": PROFILE, "v": PROFILE}),
+    "planar-polar": (
+        PlanarPolar,
+        {"matrix": MATRIX, "reference": NUMBERS, "v": PROFILE, "along": TEXT, "start_px": NUMBER},
+    ),
     "framed": (Framed, {"target": TARGET} | dict.fromkeys(("left", "top", "across", "down"), NUMBER)),
 }
 PROFILES: Kinds = {
@@ -168,6 +183,7 @@ PROFILES: Kinds = {
         PolynomialInverse,
         {"coefficients": NUMBERS, "value_low": NUMBER, "value_high": NUMBER},
     ),
+    "monotone-spline": (MonotoneSpline, {"knots": NUMBERS, "slopes": NUMBERS, "value_low": NUMBER}),
     "framed": (FramedProfile, {"profile": PROFILE, "start": NUMBER, "scale": NUMBER}),
 }
 

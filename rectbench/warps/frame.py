@@ -8,6 +8,9 @@
 
 from __future__ import annotations
 
+import math
+from functools import lru_cache
+
 import numpy as np
 from scipy.spatial.transform import Rotation
 
@@ -18,15 +21,25 @@ from rectbench.types import FloatArray
 
 EDGE_STEP_RAD = 1e-6
 """An epipole nearer to the edge of the view than this counts as lying on the edge, outside."""
+SWAPPED_COSINE = math.cos(math.radians(45.0))
+"""A baseline nearer to the camera's -x than 45° is that of a pair side by side, right camera first."""
+SEAM_STEPS = 180
+"""Angles β, 2° apart, among which the seam is placed,"""
+SEAM_PLACES = 91
+"""and places along each epipolar line, at which it is told what a seam there would cut."""
 
 
+@lru_cache(maxsize=64)
 def rectifying_rotations(rig: Rig) -> tuple[FloatArray, FloatArray]:
-    """(R_rect_left, R_rect_right), camera to rectified frame, after Bouguet.
+    """(R_rect_left, R_rect_right), camera to rectified frame, after Bouguet; read-only.
 
-    Each camera takes half the relative rotation; then the smallest rotation lays the baseline on
-    the x axis, so that disparity is positive. A pair given right camera first, whose right camera stands
-    rather to the left of the left one than above, below, before or behind it, keeps its images upright
-    instead, and has `signed_baseline_m` below zero.
+    Each camera takes half the relative rotation; then the smallest rotation lays the baseline on the x axis,
+    so that disparities are positive. Of a pair side by side that is given right camera first it is laid on
+    the opposite direction: its images stay upright, and `signed_baseline_m` is below zero.
+
+    Where the lenses see β = ±180°, as where the view goes round an epipole, the frame is turned about the
+    baseline, so that this seam cuts the least: to the middle of the largest gap between the angles β that
+    are seen, or, where all are, to where its epipolar lines cross the fewest source pixels.
 
     >>> import rectbench as rb
     >>> rig = rb.load_rig("t265")
@@ -34,12 +47,59 @@ def rectifying_rotations(rig: Rig) -> tuple[FloatArray, FloatArray]:
     >>> (R_rect_right @ rig.t_right_left / rig.baseline_m).round(9) + 0.0  # the baseline is the x axis
     array([-1.,  0.,  0.])
     """
+    rotations = forward_rotations(rig)
+    if _seen_pixels(rig, rotations, np.array([math.pi])).any():
+        turn = turned_about_x(math.pi - _seam_rad(rig, rotations))
+        rotations = turn @ rotations[0], turn @ rotations[1]
+    for rotation in rotations:
+        rotation.flags.writeable = False
+    return rotations
+
+
+def forward_rotations(rig: Rig) -> tuple[FloatArray, FloatArray]:
+    """The same wherever the seam lies: z is as near as can be to where the two cameras look, in the mean."""
     half = Rotation.from_matrix(rig.R_right_left).as_rotvec() / 2
     R_mid_left = Rotation.from_rotvec(half).as_matrix()
     R_mid_right = Rotation.from_rotvec(-half).as_matrix()
     baseline = R_mid_left @ rig.centre_right_in_left / rig.baseline_m
     R_rect_mid = _smallest_rotation_onto_x(baseline)
     return R_rect_mid @ R_mid_left, R_rect_mid @ R_mid_right
+
+
+def _seam_rad(rig: Rig, rotations: tuple[FloatArray, FloatArray]) -> float:
+    """Where a seam cuts the least, β in the frame of these rotations."""
+    beta = math.pi + 2 * math.pi * np.arange(SEAM_STEPS) / SEAM_STEPS
+    cut_px = _seen_pixels(rig, rotations, beta)
+    if cut_px.all() or not cut_px.any():
+        return float(beta[cut_px.argmin()])
+    # From an angle that is seen on, so that no gap lies across the end.
+    first = int(cut_px.argmax())
+    is_gap = np.append(np.roll(cut_px, -first) == 0, False)
+    starts = np.flatnonzero(is_gap[1:] & ~is_gap[:-1]) + 1
+    lengths = np.array([is_gap[start:].argmin() for start in starts])
+    longest = int(lengths.argmax())
+    middle = first + starts[longest] + (lengths[longest] - 1) / 2
+    return math.pi + 2 * math.pi * float(middle) / SEAM_STEPS
+
+
+def _seen_pixels(rig: Rig, rotations: tuple[FloatArray, FloatArray], beta: FloatArray) -> FloatArray:
+    """[K], how many source pixels of both images the epipolar lines of angles β [K] cross."""
+    gamma = np.linspace(-math.pi / 2, math.pi / 2, SEAM_PLACES)
+    x, across = np.broadcast_arrays(np.sin(gamma), beta[:, None])
+    rays = np.stack([x, np.cos(gamma) * np.sin(across), np.cos(gamma) * np.cos(across)], axis=-1)
+    crossed = np.zeros(len(beta))
+    for camera, R_rect_cam in zip((rig.left, rig.right), rotations, strict=True):
+        pixels, ok = camera.project(rays @ R_rect_cam)
+        steps = np.linalg.norm(np.diff(pixels, axis=1), axis=-1)
+        seen = ok & camera.contains(pixels)
+        crossed += np.where(seen[:, 1:] & seen[:, :-1], steps, 0.0).sum(axis=1) + seen.any(axis=1)
+    return crossed
+
+
+def turned_about_x(angle_rad: float) -> FloatArray:
+    """The rotation [3, 3] that adds an angle to β."""
+    c, s = math.cos(angle_rad), math.sin(angle_rad)
+    return np.array([[1.0, 0.0, 0.0], [0.0, c, s], [0.0, -s, c]])
 
 
 def signed_baseline_m(rig: Rig) -> float:
@@ -49,9 +109,8 @@ def signed_baseline_m(rig: Rig) -> float:
 
 
 def _smallest_rotation_onto_x(direction: FloatArray) -> FloatArray:
-    """The rotation of least angle that takes `direction` to the x axis, or to -x where it points there."""
-    x, y, z = direction
-    target = np.array([-1.0 if x < -max(abs(y), abs(z)) else 1.0, 0.0, 0.0])
+    """The rotation of least angle that takes `direction` to the x axis; to -x that of a swapped pair."""
+    target = np.array([-1.0 if direction[0] < -SWAPPED_COSINE else 1.0, 0.0, 0.0])
     w = np.cross(direction, target)
     cross = np.array([[0, -w[2], w[1]], [w[2], 0, -w[0]], [-w[1], w[0], 0]])
     rotation: FloatArray = np.eye(3) + cross + cross @ cross / (1 + direction @ target)
@@ -108,7 +167,7 @@ def centre_resolution_px(rig: Rig) -> float:
     285.9
     """
     rates = [
-        np.sqrt(abs(np.linalg.det(camera.project_jacobian([0.0, 0.0, 1.0])[:, :2])))
+        np.sqrt(abs(np.linalg.det(camera.whole.project_jacobian([0.0, 0.0, 1.0])[:, :2])))
         for camera in (rig.left, rig.right)
     ]
     return float(np.mean(rates))

@@ -162,12 +162,15 @@ RADIAL_LIMIT_RAD = {
     "equisolid": math.pi * (1 - 1e-6),
     "orthographic": math.pi / 2 * (1 - 1e-6),
     "cylindrical": math.pi / 2 * (1 - 1e-6),
+    "mercator": math.pi / 2 * (1 - 1e-6),
 }
 
 
 @dataclass(frozen=True)
 class Radial(Profile):
-    """centre + focal r(θ) with r one of the classical lens laws (Abraham and Förstner 2005).
+    """centre + focal r(θ) with r one of the classical lens laws (Abraham and Förstner 2005), or Mercator's.
+
+    The last, r = artanh(sin θ), is the one that is conformal beside equidistant rows.
 
     >>> import rectbench as rb
     >>> rb.Radial("equidistant", 300.0, 10.0)([0.0, 0.5])
@@ -208,6 +211,7 @@ class Radial(Profile):
             "equisolid": lambda t: 2.0 * xp.sin(0.5 * t),
             "orthographic": lambda t: xp.sin(t),
             "cylindrical": lambda t: xp.tan(t),
+            "mercator": lambda t: xp.asinh(xp.tan(t)),
         }
         return c.centre + c.focal * laws[self.law](angle)
 
@@ -218,5 +222,6 @@ class Radial(Profile):
             "equisolid": lambda r: 2.0 * xp.asin(0.5 * r),
             "orthographic": lambda r: xp.asin(r),
             "cylindrical": lambda r: xp.atan2(r, 1.0 + 0.0 * r),
+            "mercator": lambda r: xp.atan(xp.sinh(r)),
         }
         return inverses[self.law]((value - c.centre) / c.focal)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import cv2
 import numpy as np
@@ -24,6 +25,12 @@ from rectbench.warps.warp import Warp
 
 LARGEST_SIDE_PX = 32766
 """`cv2.remap` takes no larger image."""
+SEAM_RAD = 1e-12
+"""So near to β = ±180° the two ends of the rows are looked for."""
+SEAM_COLUMNS = 65
+"""Of an image, of which one is looked at that shows anything."""
+SEAM_SLACK_PX, SEAM_ROUNDING_PX = 2.0, 1e-3
+"""An image that lacks no more rows than this goes all around; and what turns of two images may differ by."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,6 +136,22 @@ class Rectification:
             raise InvalidInput(f"side is {side!r}; expected 'left' or 'right'")
         return self.left if side == "left" else self.right
 
+    @cached_property
+    def turn_px(self) -> float | None:
+        """After how many rows the images begin again, where these go all around the baseline; else None.
+
+        First and last row are neighbours in space then: the images are cut there, along the seam β = ±180°.
+        """
+        turns = [_turn_px(warp.target, self.size) for warp in (self.left, self.right)]
+        if None in turns or abs(turns[0] - turns[1]) > SEAM_ROUNDING_PX:  # type: ignore[operator]
+            return None
+        return turns[0]
+
+    def rows_apart(self, v_left: ArrayLike, v_right: ArrayLike) -> FloatArray:
+        """v̂_left - v̂_right [...], the shorter way around where rows go all around, see `turn_px`."""
+        apart = np.asarray(v_left, dtype=float) - np.asarray(v_right, dtype=float)
+        return across_seam(apart, self.turn_px)
+
     def scaled(self, factor: float) -> Rectification:
         """The same images `factor` times as large (sizes rounded to whole pixels), see `Framed`."""
         try:
@@ -212,6 +235,27 @@ class Rectification:
     @staticmethod
     def _camera_rays(warp: Warp, px_rect: FloatArray) -> FloatArray:
         return warp.target.unproject(px_rect)[0] @ warp.R_rect_cam
+
+
+def across_seam(apart_px: FloatArray, turn_px: float | None) -> FloatArray:
+    """Differences of rows [...], those of more than half a turn taken the other way around."""
+    if turn_px is None:
+        return apart_px
+    nearer: FloatArray = apart_px - turn_px * np.round(apart_px / turn_px)
+    return nearer
+
+
+def _turn_px(target: Target, size: tuple[int, int]) -> float | None:
+    """Rows from β = -180° to 180°, where an image of `size` has them all."""
+    columns = np.linspace(0, size[0] - 1, SEAM_COLUMNS)
+    rays, shown = target.unproject(np.stack([columns, np.full(SEAM_COLUMNS, (size[1] - 1) / 2)], axis=-1))
+    if not shown.any():
+        return None
+    middle = rays[shown][shown.sum() // 2]
+    off = math.hypot(middle[1], middle[2])
+    ends, ok = target.project([[middle[0], -off * SEAM_RAD, -off], [middle[0], off * SEAM_RAD, -off]])
+    turn_px = float(ends[1, 1] - ends[0, 1])
+    return turn_px if ok.all() and size[1] / 2 < turn_px < size[1] + SEAM_SLACK_PX else None
 
 
 def _shown(profile: Profile, angles: Range) -> tuple[float, float]:

@@ -159,23 +159,22 @@ class Epipolar(Target):
 
     def project_formula(self, c: Any, x: Any, y: Any, z: Any, xp: Formulas) -> tuple[Any, Any, Any]:
         gamma, beta = xp.atan2(x, xp.hypot(y, z)), xp.atan2(y, z)
-        ok = _in_range(c.u, gamma) & _in_range(c.v, beta)
+        ok = in_range(c.u, gamma) & in_range(c.v, beta)
         return self.u.value(c.u, gamma, xp), self.v.value(c.v, beta, xp), ok
 
     def unproject_formula(self, c: Any, u: Any, v: Any, xp: Formulas) -> tuple[Any, Any, Any, Any]:
         gamma, beta = self.u.angle(c.u, u, xp), self.v.angle(c.v, v, xp)
         column, row = (xp.sin(gamma), xp.cos(gamma)), (xp.sin(beta), xp.cos(beta))
         x, y, z, ok = self.ray_formula(c, column, row, xp)
-        in_range = _in_range(c.u, gamma) & _in_range(c.v, beta)
-        return x, y, z, ok & in_range
+        return x, y, z, ok & in_range(c.u, gamma) & in_range(c.v, beta)
 
     def axis_tables(self, columns: FloatArray, rows: FloatArray) -> tuple[Axis, Axis]:
         c = namespaced(self.constants)
         with np.errstate(invalid="ignore"):
             gamma = self.u.angle(c.u, columns, NUMPY)
             beta = self.v.angle(c.v, rows, NUMPY)
-            gamma = np.where(_in_range(c.u, gamma) & (abs(gamma) <= math.pi / 2), gamma, math.nan)
-            beta = np.where(_in_range(c.v, beta), beta, math.nan)
+            gamma = np.where(in_range(c.u, gamma) & (abs(gamma) <= math.pi / 2), gamma, math.nan)
+            beta = np.where(in_range(c.v, beta), beta, math.nan)
         return (np.sin(gamma), np.cos(gamma)), (np.sin(beta), np.cos(beta))
 
     def ray_formula(self, c: Any, column: Any, row: Any, xp: Formulas) -> tuple[Any, Any, Any, Any]:
@@ -183,7 +182,8 @@ class Epipolar(Target):
         return sin_gamma, cos_gamma * sin_beta, cos_gamma * cos_beta, cos_gamma >= 0.0
 
 
-def _in_range(c: Any, angle: Any) -> Any:
+def in_range(c: Any, angle: Any) -> Any:
+    """Mask of the angles that a profile with the constants c has."""
     return (angle >= c.low - ANGLE_SLACK_RAD) & (angle <= c.high + ANGLE_SLACK_RAD)
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import yaml
+from scipy.interpolate import BSpline
 
 import rectbench as rb
 from rectbench.warps import Framing, framed
@@ -14,7 +15,16 @@ from rectbench.warps.description import load_rectification, rectification_text, 
 from tests.rigs_for_tests import rig
 from tests.warps.test_windows import Squeezed
 
-METHODS = ("conventional", "abraham", "local-homography", "hartley", "fusiello")
+METHODS = (
+    "conventional",
+    "abraham",
+    "local-homography",
+    "hartley",
+    "fusiello",
+    "polar",
+    "log-polar",
+    "polar-optimal",
+)
 
 
 @pytest.mark.parametrize("method", METHODS)
@@ -28,6 +38,16 @@ def test_what_is_read_is_what_was_written_to_the_last_bit(
     assert again.size == rect.size
     assert again.rig == rect.rig
     assert again.notes == rect.notes
+    for side in ("left", "right"):
+        for ours, theirs in zip(rect.maps(side), again.maps(side), strict=True):
+            np.testing.assert_array_equal(ours, theirs)
+
+
+@pytest.mark.parametrize("method", ["polar", "log-polar"])
+def test_pencils_of_lines_in_planes_are_written(tmp_path: Path, method: str) -> None:
+    rect = rb.rectify(rb.load_rig("pinhole-toed-in"), method, form="planar")
+    save_rectification(rect, tmp_path / "rectified.yaml")
+    again = load_rectification(tmp_path / "rectified.yaml")
     for side in ("left", "right"):
         for ours, theirs in zip(rect.maps(side), again.maps(side), strict=True):
             np.testing.assert_array_equal(ours, theirs)
@@ -53,6 +73,31 @@ def test_a_reader_with_the_file_alone_gets_the_same_pixels() -> None:
         cubic = file["right"]["target"][name]
         value = np.polyval([cubic[c] for c in ("c3", "c2", "c1", "c0")], angle)
         np.testing.assert_allclose(value, rect.right.forward(pixels)[:, "uv".index(name)], atol=1e-9)
+
+
+def test_a_reader_with_the_file_alone_gets_the_same_pixels_of_splines() -> None:
+    rect = rb.rectify(rig("equidistant"), "polar-optimal")
+    file = yaml.safe_load(rectification_text(rect))
+    pixels = rb.evaluation_pixels(rect.rig.right, 60)
+    x, y, z = np.array(file["right"]["R_rect_cam"]) @ rect.rig.right.unproject(pixels)[0].T
+    for place, angle in enumerate((np.arctan2(x, np.hypot(y, z)), np.arctan2(y, z))):
+        told = file["right"]["target"]["uv"[place]]
+        outer = [told["knots"][0]] * 2, [told["knots"][-1]] * 2
+        rise = BSpline([*outer[0], *told["knots"], *outer[1]], told["slopes"], 2).antiderivative()
+        value = told["value_low"] + rise(angle) - rise(told["knots"][0])
+        np.testing.assert_allclose(value, rect.right.forward(pixels)[:, place], atol=1e-9)
+
+
+def test_a_reader_with_the_file_alone_gets_the_same_pixels_of_a_pencil() -> None:
+    rect = rb.rectify(rb.load_rig("pinhole-toed-in"), "polar", form="planar")
+    target = yaml.safe_load(rectification_text(rect))["left"]["target"]
+    pixels = rb.evaluation_pixels(rect.rig.left, 60)
+    a, b, w = np.array(target["matrix"])[:, 0]
+    reach, reference = (
+        np.linalg.norm(np.subtract(px, [a / w, b / w]), axis=-1) for px in (pixels, target["reference"])
+    )
+    value = target["start_px"] - np.sign(w) * (reach - reference)
+    np.testing.assert_allclose(value, rect.left.forward(pixels)[:, 0], atol=1e-6)
 
 
 def test_a_reader_with_the_file_alone_gets_the_same_points() -> None:

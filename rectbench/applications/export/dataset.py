@@ -65,7 +65,7 @@ class _Export:
             "scene": self.scene.name,
             "scene_source": self.scene.digest,
             "rig": rig_numbers(self.rig),
-            **self.request.model_dump(include={"motion", "image_width", "quality", "spp"}),
+            **self.request.model_dump(include={"motion", "image_width", "quality", "spp", "margin_deg"}),
             "method": self.method.name,
             "method_source": self.method.digest,
             "options": self.options.model_dump(mode="json"),
@@ -79,7 +79,8 @@ class _Export:
 
     def rectification(self, seed: int) -> Rectification:
         """The rectification of that rig."""
-        return fit(self.method, pose_problem(self.true_rig(seed), seed=seed), self.options)
+        problem = pose_problem(self.true_rig(seed), seed=seed, margin_deg=self.request.margin_deg)
+        return fit(self.method, problem, self.options)
 
 
 @dataclass(frozen=True)

@@ -161,6 +161,7 @@ def _rectification(
     framing = Framing(**{name: getattr(request, name) for name in FramingRequest.model_fields})
     without_calibration = request.rig is None
     given: dict[str, Any] = {"images": images, "matches": matches, "seed": request.seed}
+    given["margin_deg"] = request.margin_deg
     if request.method == BEST:
         methods = uncalibrated_methods() if without_calibration else None
         choice = best_method(rig, framing=framing, trusted=trusted, methods=methods, **given)

@@ -13,6 +13,8 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationEr
 from rectbench.applications.requests.words import options_in, size_in
 from rectbench.errors import InvalidInput, RectbenchError, argument
 from rectbench.plugins.defaults import DEFAULT_METHOD
+from rectbench.rigs import MARGIN_DEG
+from rectbench.rigs.rig import checked_margin
 
 
 @dataclass(frozen=True)
@@ -96,6 +98,7 @@ Seed = Annotated[int, number(Integral, "a whole number from 0 on", lambda n: n >
 Positive = Annotated[float, number(Real, "a number above 0", lambda x: 0 < x < float("inf"))]
 ImageWidth = Annotated[int, number(Integral, "a width in pixels", lambda n: n >= 1)]
 AngleDeg = Annotated[float, number(Real, "an angle above 0, at most 180", lambda x: 0 < x <= 180)]
+Margin = Annotated[float, BeforeValidator(checked_margin)]
 Text = Annotated[str, BeforeValidator(str)]
 """A name or a path."""
 
@@ -133,7 +136,17 @@ class SizedRigRequest(RigRequest):
     )
 
 
-class OptionsRequest(Request):
+class MarginRequest(Request):
+    """What of the view is trimmed, before any method sees it."""
+
+    margin_deg: Margin = word(
+        "Nearer to the epipoles than this, where rows meet, the view is trimmed.",
+        default=MARGIN_DEG,
+        metavar="DEGREES",
+    )
+
+
+class OptionsRequest(MarginRequest):
     """How a method is set."""
 
     options: dict[str, Any] = word(

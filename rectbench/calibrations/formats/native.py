@@ -11,6 +11,9 @@
           fx: 285.7                 # pixels; pixel (0, 0) is the centre of the top-left pixel
           ...
         max_angle_deg: 80.0         # angle from the axis where the image circle ends; optional
+        blind:                      # what is left out of the view: two cones about a line; optional
+          axis: [1.0, 0.0, 0.0]     # the line's direction in the camera's frame
+          within_deg: 7.0           # the cones' half angle
       right: ...                    # likewise
     R_right_left:                   # X_right = R_right_left X_left + t_right_left
       - [1.0, 0.0, 0.0]
@@ -30,8 +33,8 @@ from typing import Any
 
 from rectbench.calibrations.assembling import assembled, camera_of, rigid, single
 from rectbench.calibrations.contract import Given, RigFormat
-from rectbench.calibrations.documents import Section, parse_document
-from rectbench.cameras import Camera
+from rectbench.calibrations.documents import Section, errors_at, parse_document
+from rectbench.cameras import Camera, Cones
 from rectbench.rigs.file_formats import Writing
 from rectbench.rigs.rig import Rig
 from rectbench.yaml_text import yaml_text
@@ -78,7 +81,7 @@ def rig_fields(rig: Rig) -> dict[str, Any]:
 
 
 def _read_camera(section: Section, size: tuple[int, int] | None) -> Camera:
-    section.only(("model", "size", "params", "max_angle_deg"))
+    section.only(("model", "size", "params", "max_angle_deg", "blind"))
     model = section.text("model", "a projection model")
     if len(model) > LONGEST_MODEL:
         raise section.fault("model", "a projection model")
@@ -91,7 +94,19 @@ def _read_camera(section: Section, size: tuple[int, int] | None) -> Camera:
     }
     max_angle = section.number("max_angle_deg", "degrees") if "max_angle_deg" in section else None
     image = section.size("size", size)
-    return camera_of(section.where, model, image, values, max_angle)
+    camera = camera_of(section.where, model, image, values, max_angle)
+    return (
+        replace(camera, blind=_read_cones(section.section("blind", "cones")))
+        if "blind" in section
+        else camera
+    )
+
+
+def _read_cones(section: Section) -> Cones:
+    section.only(("axis", "within_deg"))
+    x, y, z = section.numbers("axis", "a direction", 3)
+    with errors_at(section.where):
+        return Cones((x, y, z), section.number("within_deg", "degrees"))
 
 
 def _camera_fields(camera: Camera) -> dict[str, Any]:
@@ -101,6 +116,8 @@ def _camera_fields(camera: Camera) -> dict[str, Any]:
     fields: dict[str, Any] = {"model": camera.model, "size": list(camera.size), "params": params}
     if camera.max_angle_deg is not None:
         fields["max_angle_deg"] = float(camera.max_angle_deg)
+    if camera.blind is not None:
+        fields["blind"] = {"axis": list(camera.blind.axis), "within_deg": camera.blind.within_deg}
     return fields
 
 

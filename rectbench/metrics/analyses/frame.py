@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from rectbench.metrics.coverage import coverage
+from rectbench.metrics.coverage import TRIMMED, coverage
 from rectbench.metrics.log_distortion import log_distortion
 from rectbench.metrics.sampling import sampling
-from rectbench.rigs import Rig
+from rectbench.rigs import MARGIN_DEG, Rig
 from rectbench.scored import Delivered, ScoredView
 from rectbench.warps import Rectification, centre_resolution_px
 from rectbench.warps.view.framing import focal_px
@@ -16,7 +16,8 @@ def frame_costs(rect: Rectification, rig: Rig) -> dict[str, float]:
 
     - `width_px`, `height_px` of the rectified images; `focal_px` on the rectified frame's axis, and
       `magnification`, that against the source's at its centre.
-    - `coverage_pixels`, `coverage_solid_angle`, `coverage_overlap`, `valid_output`, see `coverage`.
+    - `coverage_pixels`, `coverage_solid_angle`, `coverage_overlap`, `valid_output`, and
+      `trimmed` where anything is, see `coverage`.
     - `sampling_lost`, `sampling_invented`, see `sampling`.
     - `log_distortion_kept`: log distortion over the pixels that stay in the frame.
 
@@ -27,7 +28,8 @@ def frame_costs(rect: Rectification, rig: Rig) -> dict[str, float]:
     True
     """
     focal = focal_px(rect)
-    shares, shown = coverage(rect, rig), Delivered.of(rect, ScoredView.of(rig)).shown
+    view = ScoredView.of(rig, margin_deg=rect.rig.margin_deg or MARGIN_DEG)
+    shares, shown = coverage(rect, rig), Delivered.of(rect, view).shown
     return {
         "width_px": float(rect.size[0]),
         "height_px": float(rect.size[1]),
@@ -35,7 +37,14 @@ def frame_costs(rect: Rectification, rig: Rig) -> dict[str, float]:
         "magnification": focal / centre_resolution_px(rig),
         **{
             name: shares[name]
-            for name in ("coverage_pixels", "coverage_solid_angle", "coverage_overlap", "valid_output")
+            for name in (
+                "coverage_pixels",
+                "coverage_solid_angle",
+                "coverage_overlap",
+                "valid_output",
+                TRIMMED,
+            )
+            if name in shares
         },
         **sampling(shown),
         "log_distortion_kept": log_distortion(shown)["log_distortion"],

@@ -7,10 +7,14 @@ from typing import NamedTuple
 
 import numpy as np
 
+from rectbench.cameras import Camera
 from rectbench.rigs import Rig
 from rectbench.types import FloatArray
 from rectbench.warps.frame import angles, rectifying_rotations
 from rectbench.warps.view.sampling import outline_pixels
+
+ABOUT_DEG, ABOUT_RAYS = 20, 360
+"""How far around the cones where a lens is blind its view is looked at ray by ray, and rays a ring."""
 
 
 class Range(NamedTuple):
@@ -56,9 +60,30 @@ def view_angles(rig: Rig) -> ViewAngles:
         gamma, beta = angles(camera.unproject(pixels)[0] @ R_rect_cam.T)
         # Between two grid pixels the image circle may reach further, by their spacing at the most.
         margin = spacing / max(camera.size)
-        gammas.append(_range(gamma, margin, math.pi / 2))
-        betas.append(_range(beta, margin, math.pi))
+        gammas.append(_range(gamma, margin, _reach(camera, R_rect_cam)))
+        betas.append(_range(np.append(beta, _beta_about(camera, R_rect_cam)), margin, math.pi))
     return ViewAngles(gammas[0], gammas[1], _union(betas[0], betas[1]))
+
+
+def _reach(camera: Camera, R_rect_cam: FloatArray) -> float:
+    """The greatest |γ| that the camera can see."""
+    if camera.blind is None:
+        return math.pi / 2
+    off = np.linalg.norm((R_rect_cam @ camera.blind.axis)[1:])
+    return math.pi / 2 - max(0.0, math.radians(camera.blind.within_deg) - math.asin(min(1.0, float(off))))
+
+
+def _beta_about(camera: Camera, R_rect_cam: FloatArray) -> FloatArray:
+    """The angles β [N] that the camera sees around the cones where it is blind, to a degree.
+
+    So near to the epipoles pixels of a grid are many degrees of β apart.
+    """
+    if camera.blind is None:
+        return np.empty(0)
+    off = math.radians(camera.blind.within_deg) + np.radians(np.arange(ABOUT_DEG + 1))
+    rays = camera.blind.rings(off, ABOUT_RAYS)
+    _, beta = angles(rays[camera.sees(rays)] @ R_rect_cam.T)
+    return np.concatenate([beta - math.pi / ABOUT_RAYS, beta + math.pi / ABOUT_RAYS])
 
 
 def _union(a: Range, b: Range) -> Range:
@@ -92,6 +117,6 @@ def centre_rays(rig: Rig) -> FloatArray:
     rotations = rectifying_rotations(rig)
     rays = [
         camera.unproject([(camera.width - 1) / 2, (camera.height - 1) / 2])[0] @ R_rect_cam.T
-        for camera, R_rect_cam in zip((rig.left, rig.right), rotations, strict=True)
+        for camera, R_rect_cam in zip((rig.left.whole, rig.right.whole), rotations, strict=True)
     ]
     return np.stack(rays)

@@ -54,21 +54,21 @@ def outline_pixels(camera: Camera) -> tuple[FloatArray, float]:
     """Pixels [N, 2] whose images bound the view's image under any continuous map, and their spacing.
 
     The rim of the image, half a pixel out, where the lens sees all of it; else a grid over the whole
-    image too, since the image circle's edge then bounds the view. The spacing in pixels tells how far
-    the bound may be off; it is 0 for the rim alone.
+    image too, since the image circle's edge, or that of the part where the lens is blind, then bounds the
+    view. The spacing in pixels tells how far the bound may be off; it is 0 for the rim alone.
 
     >>> import rectbench as rb
     >>> pixels, spacing_px = rb.outline_pixels(rb.load_rig("bumblebee2").left)
     >>> pixels.shape, spacing_px
     ((1028, 2), 0.0)
     """
-    right, bottom = camera.width - 0.5, camera.height - 0.5
-    u, v = np.linspace(-0.5, right, RIM_POINTS), np.linspace(-0.5, bottom, RIM_POINTS)
-    sides = ((u, -0.5), (u, bottom), (-0.5, v), (right, v))
-    rim = np.concatenate([np.stack(np.broadcast_arrays(*side), axis=-1) for side in sides])
-    seen = camera.unproject(rim)[1]
-    if seen.all():
+    rim = camera.rim(RIM_POINTS)
+    if camera.blind is None and camera.unproject(rim)[1].all():
         return rim, 0.0
+    u, v = (
+        np.linspace(-0.5, camera.width - 0.5, RIM_POINTS),
+        np.linspace(-0.5, camera.height - 0.5, RIM_POINTS),
+    )
     grid = np.stack(np.meshgrid(u, v), axis=-1).reshape(-1, 2)
     inside = grid[camera.unproject(grid)[1]]
     return inside, max(camera.size) / (RIM_POINTS - 1)
