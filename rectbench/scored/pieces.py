@@ -26,6 +26,8 @@ FEWEST_PIECES = 6_000
 """In the source image; where a table has fewer, a finer one of the same map is looked at."""
 LARGEST_TABLE = 2_000_000
 """Entries of a table that is made for this alone."""
+LARGE_SHARE = 1 / 8
+"""Of the image's side; pieces are a tenth as large."""
 ROUNDING_PX = 0.1
 
 
@@ -219,7 +221,9 @@ def _drop_far_sides(
     About the direction straight back a model may have pixels all around the image, and a quad there seems to
     hold the image. What it shows is what lies between the rays of its corners.
     """
-    large = np.argwhere(shows & np.any(extents > np.array(camera.size)[:, None, None] / 2, axis=0))
+    large_px = LARGE_SHARE * np.array(camera.size)[:, None, None]
+    with np.errstate(invalid="ignore"):
+        large = np.argwhere(shows & np.any(extents > large_px, axis=0))
     corners = np.stack([corner[:, large[:, 0], large[:, 1]].T for corner in quads])
     off = ~camera.contains(corners).any(axis=0)
     rays = np.nansum(camera.whole.unproject(corners[:, off])[0], axis=0)

@@ -29,7 +29,7 @@ from rectbench.warps.fitted_profiles import Composed, PolynomialInverse
 from rectbench.warps.frame import signed_baseline_m
 from rectbench.warps.profiles import Cubic, FramedProfile, Profile, Radial
 from rectbench.warps.rectification import Rectification
-from rectbench.warps.targets import Epipolar, Framed, Perspective, Target
+from rectbench.warps.targets import Epipolar, Framed, Perspective, Target, Wrapped
 from rectbench.warps.warp import Warp
 from rectbench.writing import write_atomically
 from rectbench.yaml_text import yaml_text
@@ -53,6 +53,8 @@ HEADER = """\
 #        composed    the outer profile of the inner one's value in the place of a
 #        polynomial-inverse   a = q0 + q1 x + q2 x^2 + ... (the coefficients), where x goes from -1 at
 #                    value_low to 1 at value_high
+#      wrapped       its target, whose rows go all around the baseline: beyond row start + turn, and before
+#                    row start, they begin again
 #
 # Rows of the two images correspond: v is the same in both. Disparity is u_left - u_right. With gamma_left
 # and gamma_right of two matched pixels, beta of their row and baseline_m = b (below 0 where the right
@@ -158,6 +160,7 @@ Kinds = Mapping[str, tuple[type, Mapping[str, Field]]]
 TARGETS: Kinds = {
     "perspective": (Perspective, {"matrix": MATRIX}),
     "epipolar": (Epipolar, {"u": PROFILE, "v": PROFILE}),
+    "wrapped": (Wrapped, {"target": TARGET} | dict.fromkeys(("start", "turn"), NUMBER)),
     "framed": (Framed, {"target": TARGET} | dict.fromkeys(("left", "top", "across", "down"), NUMBER)),
 }
 PROFILES: Kinds = {
