@@ -6,12 +6,13 @@ report = rb.Report(
     name="motions",
     title="Any lens, any motion",
     description=(
-        "Four ideal equidistant lenses of 100°, 160°, 190° and 220°, and how the right camera may stand to the "
-        "left: beside it, above it, before it, behind it, aslant, or looking another way by 30°, 60° or 90°. "
-        "Where an epipole is in the view, rows meet there, and the view is trimmed about it, for all methods "
-        "alike; what is kept is counted against the whole lens. Nothing is rendered: row errors are of points "
-        "at 5 to 200 baselines, under the exact pose and under a perturbed one (0.05° off in rotation, 0.3° in "
-        "the baseline's direction). Hartley and Fusiello work from true matches with 0.1 px of noise."
+        "Four ideal equidistant lenses of 100°, 160°, 190° and 220°, and how the right camera may stand to "
+        "the left: beside it, above it, before it, behind it, aslant, or looking another way by 30°, 60° or "
+        "90°. Where an epipole is in the view, rows meet there, and the view is trimmed about it, for all "
+        "methods alike; what is kept is counted against the whole lens. Nothing is rendered: row errors are "
+        "of points at 5 to 200 baselines, under the exact pose and under a perturbed one (0.05° off in "
+        "rotation, 0.3° in the baseline's direction). Hartley and Fusiello work from true matches with 0.1 px "
+        "of noise."
     ),
     rigs=("lens-100", "lens-160", "lens-190", "lens-220"),
     motions=(

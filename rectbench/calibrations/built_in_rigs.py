@@ -32,7 +32,7 @@ MADE_UP = frozenset({"lens-100", "lens-160", "lens-190", "lens-220"})
 
 
 def fisheye_rigs(least_fov_deg: float = FISHEYE_DEG) -> tuple[str, ...]:
-    """The names of the rigs that ship with rectbench and whose two lenses, real ones, see that far, a lens once, sorted.
+    """The names of the rigs that ship with rectbench whose two lenses see that far: real ones, each once.
 
     The field of view is that across the image's diagonal, of the narrower lens.
 
