@@ -11,8 +11,8 @@ report = rb.Report(
         "90°. Where an epipole is in the view, rows meet there, and the view is trimmed about it, for all "
         "methods alike; what is kept is counted against the whole lens. Nothing is rendered: row errors are "
         "of points at 5 to 200 baselines, under the exact pose and under a perturbed one (0.05° off in "
-        "rotation, 0.3° in the baseline's direction). Hartley and Fusiello work from true matches with 0.1 px "
-        "of noise."
+        "rotation, 0.3° in the baseline's direction). Hartley and Fusiello work from true matches with 0.1 "
+        "px of noise."
     ),
     rigs=("lens-100", "lens-160", "lens-190", "lens-220"),
     motions=(

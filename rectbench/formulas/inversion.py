@@ -57,18 +57,25 @@ def repeat_until_settled(
 
 
 def invert_monotone(
-    function: Callable[[Any], tuple[Any, Any]], target: Any, low: Any, high: Any, start: Any, xp: Formulas
+    function: Callable[..., tuple[Any, Any]],
+    target: Any,
+    low: Any,
+    high: Any,
+    start: Any,
+    xp: Formulas,
+    given: tuple[Any, ...] = (),
 ) -> Any:
-    """x in [low, high] with function(x) = target, by Newton steps held inside a shrinking bracket.
+    """x in [low, high] with function(x, *given) = target, by Newton steps held inside a shrinking bracket.
 
-    `function` returns value and slope and rises over the bracket. A step that would leave the
+    `function` returns value and slope and rises over the bracket; what it is `given` are numbers that differ
+    from element to element. A step that would leave the
     bracket, or turn back by more than half of the last one (two points can call each other for
     ever), becomes a bisection: a flat stretch slows it down and never throws it out. A target beyond
     the ends gives the nearer end.
     """
 
-    def step(x: Any, low: Any, high: Any, last: Any, count: Any, target: Any) -> tuple[Any, ...]:
-        value, slope = function(x)
+    def step(x: Any, low: Any, high: Any, last: Any, count: Any, target: Any, *given: Any) -> tuple[Any, ...]:
+        value, slope = function(x, *given)
         miss = target - value
         high = xp.where(miss < 0.0, x, high)
         low = xp.where(miss < 0.0, low, x)
@@ -85,7 +92,7 @@ def invert_monotone(
     zero = 0.0 * target
     low, high = low + zero, high + zero
     state = (start + zero, low, high, 4.0 * (high - low), zero)
-    return repeat_until_settled(step, unsettled, state, (target,), xp)[0]
+    return repeat_until_settled(step, unsettled, state, (target, *given), xp)[0]
 
 
 def inverse(

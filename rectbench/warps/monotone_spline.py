@@ -112,12 +112,12 @@ class MonotoneSpline(Profile):
         start, row = xp.take(c.knots, piece), [xp.take(row, piece) for row in c.c]
         length = xp.take(c.knots, piece + 1) - start
 
-        def cubic_and_slope(x: Any) -> tuple[Any, Any]:
+        def cubic_and_slope(x: Any, *row: Any) -> tuple[Any, Any]:
             return xp.polynomial(row, x), row[1] + x * (2.0 * row[2] + 3.0 * x * row[3])
 
         rise = xp.take(c.values, piece + 1) - row[0]
         first = length * xp.minimum(xp.maximum((value - row[0]) / rise, 0.0), 1.0)
-        found = start + invert_monotone(cubic_and_slope, value, 0.0 * length, length, first, xp)
+        found = start + invert_monotone(cubic_and_slope, value, 0.0 * length, length, first, xp, tuple(row))
         slack = ANGLE_SLACK_RAD * (c.value_high - c.value_low)
         inside = (value >= c.value_low - slack) & (value <= c.value_high + slack)
         return xp.where(inside, found, math.nan)
