@@ -165,7 +165,7 @@ def test_the_scene_none_selects_lenses_alone() -> None:
 
 def test_scenes_cannot_be_selected_where_there_are_none() -> None:
     with pytest.raises(
-        rb.InvalidInput, match="report parts is of lenses without a scene; expected no --scenes"
+        rb.InvalidInput, match="report parts is of lenses without a scene; expected no scenes"
     ):
         make_plan(lenses(), Selection(scenes=["street"]))
 

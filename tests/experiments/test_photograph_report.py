@@ -167,7 +167,7 @@ def test_the_gate_needs_a_path_and_then_holds_the_run_to_it(
 ) -> None:
     code, _, said = shell("gate", run_dir)
     assert code == 2
-    assert "expected --accepted FILE" in said
+    assert "expected a file of their own, --accepted" in said
     accepted = tmp_path / "mine.csv"
     accept(run_dir, accepted)
     assert gate(run_dir, accepted).exit_code == 0
@@ -179,7 +179,7 @@ def test_the_gate_needs_a_path_and_then_holds_the_run_to_it(
 
 def test_data_and_report_have_to_fit(tmp_path: Path, folder: Path, shell: Shell) -> None:
     for words, said in (
-        (("run", "real"), "report real takes photographs; expected a folder of them, --data FOLDER"),
+        (("run", "real"), "report real takes photographs; expected a folder of them, --data"),
         (("run", "quick", "--data", folder), "report quick takes no photographs; expected no --data"),
         (("run", "real", "--data", tmp_path / "gone"), "no such folder"),
         (("run", "real", "--data", folder, "--scenes", "attic"), "unknown scene 'attic'"),
