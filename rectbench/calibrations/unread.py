@@ -1,8 +1,8 @@
 """What of a calibration's files looks like part of a lens or a pose, and was not read.
 
 Readers do nothing for it: a file's mappings know which keys were asked for (`documents.entries`). A camera of
-many that nobody asked for is no such part: it was read no further than to tell it from its sibling, and has
-all that was read of that one.
+many that nobody asked for is no such part: it was hardly read, to tell it from its sibling or for where that
+one stands, and has all that was read of that one.
 """
 
 from __future__ import annotations
@@ -77,9 +77,11 @@ def _unread(entries: Entries, path: str) -> Iterator[tuple[str, bool]]:
         is_read_leaf = key in entries.asked and not isinstance(value, dict | list)
         if is_read_leaf or not _is_held(key) or _is_blank(value):
             continue
+        if not _is_matrix(value) and _is_other_camera(value, children):
+            continue
         if key in entries.asked and not _is_untouched(value):
             yield from _below(value, f"{path}{key}")
-        elif _is_matrix(value) or not _is_other_camera(value, children):
+        else:
             yield from _lens_or_pose(key, value, path)
 
 
@@ -100,7 +102,7 @@ def _lens_or_pose(key: str, value: Any, path: str) -> Iterator[tuple[str, bool]]
         inner = [one for name, item in value.items() if not _is_blank(item) and _is_held(name)
                  for one in _lens_or_pose(name, item, f"{path}{key}.")]  # fmt: skip
         is_part = bool(DISTORTION.intersection(words)) or any(is_distortion for _, is_distortion in inner)
-        if inner:
+        if inner or (LENS | POSE).intersection(words):
             yield f"{path}{key}", is_part
     elif isinstance(value, list) and any(isinstance(item, Entries) for item in value):
         for place, item in enumerate(value):
@@ -165,10 +167,10 @@ def _asked(value: Any) -> int:
 
 
 def _is_other_camera(value: Any, siblings: Sequence[Any]) -> bool:
-    """Whether a mapping was read less far than a sibling, all of whose read keys it has."""
+    """Whether a mapping was read at most half as far as a sibling, all of whose read keys it has."""
     count = _asked(value)
     return isinstance(value, dict | list) and any(
-        sibling is not value and count < _asked(sibling) and _has_what_was_read(value, sibling)
+        sibling is not value and 2 * count <= _asked(sibling) > 0 and _has_what_was_read(value, sibling)
         for sibling in siblings
         if isinstance(sibling, dict | list)
     )

@@ -17,6 +17,8 @@ from tests.calibrations.test_every_format import assert_same_rig, written
 
 TOLD = {
     "opencv-sections": "taken for a pinhole's k1 k2 p1 p2",
+    "opencv-samples": "taken for a pinhole's k1 k2 p1 p2",
+    "opencv-left-right": "taken for a pinhole's k1 k2 p1 p2",
     "ros-fisheye-today": "K R in them, as ROS' calibrator of fisheyes writes them",
     "ros-fisheye-own-focal": "own focal length in them",
     "kitti-rectified": "holds 3 cameras; 0 and 1 are taken, others by `cameras=`",
