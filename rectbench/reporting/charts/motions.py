@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Any
 
 from rectbench.plugins.figure import Drawing, Figure, FigureData
 from rectbench.plugins.result import Part, Result, distinct
-from rectbench.reporting.shares import measure
-from rectbench.reporting.style import FAINT, INK, LOST, PAGE_INCHES, plain_log_ticks
+from rectbench.reporting.curves import ranked_by
+from rectbench.reporting.style import FAINT, INK, LOST, PAGE_INCHES
 
 if TYPE_CHECKING:
     import matplotlib.figure
     from matplotlib.axes import Axes
-    from matplotlib.colors import LogNorm
+    from matplotlib.colors import Normalize
 
 KEPT = "coverage_pixels"
 """The column that is the area of a disc: a share of the whole lens, trimmed cones included."""
@@ -96,7 +96,7 @@ def served_motions(part: Part) -> ServedMotions:
         )
         for rig in distinct(r.rig for r in results)
     )
-    return ServedMotions(measure(ranking), methods, motions, panels)
+    return ServedMotions(ranked_by(part.catalogue), methods, motions, panels)
 
 
 def _served(cells: Sequence[Result], ranking: str) -> Served | None:
@@ -112,10 +112,10 @@ def _served(cells: Sequence[Result], ranking: str) -> Served | None:
 def draw_motions(data: ServedMotions) -> matplotlib.figure.Figure:
     """A panel a lens: methods down, motions across."""
     import matplotlib.figure
-    from matplotlib.colors import LogNorm
+    from matplotlib.colors import Normalize
 
     found = [s.distortion for _, rows in data.panels for row in rows for s in row if s and s.distortion]
-    norm = LogNorm(min(found, default=0.1), max(found, default=1.0))
+    norm = Normalize(0.0, max(found, default=1.0))
     columns = min(_COLUMNS, len(data.panels))
     rows = math.ceil(len(data.panels) / columns)
     names = _LETTER_INCHES * max(map(len, data.methods)) + 0.08
@@ -144,7 +144,7 @@ def draw_motions(data: ServedMotions) -> matplotlib.figure.Figure:
     return figure
 
 
-def _draw_panel(ax: Axes, served: Sequence[Sequence[Served | None]], norm: LogNorm) -> None:
+def _draw_panel(ax: Axes, served: Sequence[Sequence[Served | None]], norm: Normalize) -> None:
     from matplotlib import colormaps
     from matplotlib.patches import Circle, Rectangle
 
@@ -172,20 +172,21 @@ def _draw_panel(ax: Axes, served: Sequence[Sequence[Served | None]], norm: LogNo
 def _draw_legend(
     figure: matplotlib.figure.Figure,
     data: ServedMotions,
-    norm: LogNorm,
+    norm: Normalize,
     cell: float,
     inches: tuple[float, float, float],
 ) -> None:
     from matplotlib.cm import ScalarMappable
     from matplotlib.patches import Circle
 
-    width, height, left = inches
+    width, height, names = inches
+    entries = 3 * len(_SHARES)
+    left = max(0.1, min(names, width - _BAR_INCHES - 0.4 - entries * cell - 0.2))
     place = figure.add_axes((left / width, 0.27 / height, _BAR_INCHES / width, 0.09 / height))
     bar = figure.colorbar(ScalarMappable(norm, _COLOURS), cax=place, orientation="horizontal")
     bar.outline.set_linewidth(0.4)
-    plain_log_ticks(bar.ax.xaxis)
     figure.text(left / width, 0.42 / height, data.label, size=6.5)
-    entries, right = len(_SHARES) * 3, left + _BAR_INCHES + 0.4
+    right = left + _BAR_INCHES + 0.4
     ax = figure.add_axes((right / width, 0.14 / height, entries * cell / width, cell / height))
     for number, share in enumerate(_SHARES):
         x = 3 * number
