@@ -13,7 +13,7 @@ from tests.rigs_for_tests import aligned_rig, rig
 
 
 def angles_deg(pair: rb.Rig, side: str) -> tuple[np.ndarray, np.ndarray]:
-    """Of all pixels of the whole lens: how far from the baseline's line they look, and whether they are seen."""
+    """Of all pixels of the whole lens: how far from the baseline's line they look; whether they are seen."""
     camera: rb.Camera = getattr(pair, side)
     rays, seen = camera.whole.unproject(camera.pixel_grid())
     towards = pair.centre_right_in_left / pair.baseline_m

@@ -12,6 +12,8 @@ from rectbench.warps.frame import forward_rotations, signed_baseline_m
 from tests.rigs_for_tests import rig
 
 AROUND = ("abraham", "local-homography")
+SEE_BEHIND = ("ocam", "tiscamera", "quadcam")
+"""Rigs whose lenses see past 90° from their axes far enough to see behind the cones about their epipoles."""
 
 
 def forward_rig(**kwargs: object) -> rb.Rig:
@@ -29,11 +31,9 @@ def beta_seen(pair: rb.Rig) -> np.ndarray:
     return np.concatenate(found)
 
 
-@pytest.mark.parametrize("name", rb.rig_names())
+@pytest.mark.parametrize("name", [name for name in rb.rig_names() if name not in SEE_BEHIND])
 def test_the_frame_of_a_rig_that_does_not_see_the_seam_is_not_turned(name: str) -> None:
     pair = rb.load_rig(name).trimmed()
-    if np.abs(beta_seen(replace(pair, left=pair.left.scaled(0.2), right=pair.right.scaled(0.2)))).max() > 175:
-        pytest.skip("sees it")
     for turned, ahead in zip(rb.rectifying_rotations(pair), forward_rotations(pair), strict=True):
         np.testing.assert_array_equal(turned, ahead)
 
@@ -105,7 +105,7 @@ def test_a_wrapped_seam_shows_once_more_what_lies_beyond_it(method: str) -> None
     there = wrapped.left.forward(pixels)
     np.testing.assert_allclose(wrapped.left.inverse(there), pixels, atol=1e-6)
     # The same source pixel, a turn farther down where that is still in the image.
-    again = there + [0, wrapped.turn_px]
+    again = there + np.array([0, wrapped.turn_px])
     again = again[again[:, 1] < wrapped.size[1] - 0.5]
     assert len(again) > 10
     np.testing.assert_allclose(
