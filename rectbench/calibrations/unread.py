@@ -51,6 +51,7 @@ class Part:
     is_distortion: bool
 
 
+@np.errstate(all="ignore")
 def tell_unread(sources: Sequence[Source], rig: Rig) -> None:
     """Tell what looks like part of a lens or a pose in the files that a rig was read from, and was not read.
 
