@@ -31,6 +31,7 @@ def compare_rotations(where: str, R: FloatArray, expected: FloatArray, what: str
         tell(f"{where} turns {angle_deg:.2f}° otherwise than {what}, which is kept to")
 
 
+@np.errstate(all="ignore")
 def compare_lengths(where: str, length: float, t: FloatArray, what: str) -> None:
     """Tell where a baseline's length, said at `where`, is not that of `t` [3], the translation of `what`."""
     expected = float(np.linalg.norm(t))
@@ -44,6 +45,7 @@ def compare_poses(where: str, T: FloatArray, expected: FloatArray, what: str) ->
     compare_lengths(where, float(np.linalg.norm(T[:3, 3])), expected[:3, 3], what)
 
 
+@np.errstate(all="ignore")
 def rotation_in(section: Section, key: str) -> FloatArray | None:
     """The rotation [3, 3] under `key`, or None where there is none, or another thing."""
     numbers = flat_numbers(section.values.get(key))

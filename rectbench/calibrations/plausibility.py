@@ -30,6 +30,7 @@ FOLDING = frozenset(("kannala-brandt", "pinhole", "tilted-pinhole", "radial-tang
 """Models whose domain ends, where not at 90° or 180°, where their distortion turns."""
 
 
+@np.errstate(all="ignore")
 def tell_implausible(rig: Rig) -> None:
     """Tell what is improbable about the rig."""
     for side, camera in (("left", rig.left), ("right", rig.right)):

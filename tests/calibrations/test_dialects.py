@@ -110,3 +110,35 @@ def test_a_lens_that_nobody_undoes_is_no_rectified_pair(tmp_path: Path) -> None:
     path.write_text(path.read_text().replace("k2: 0.0", "k2: 0.1"))
     with pytest.raises(InvalidInput, match=r"Camera\.k2 is '0.1'; expected 0 of rectified images"):
         load_rig(path)
+
+
+def test_four_coefficients_in_an_ost_are_a_fisheye_s_and_told(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    """camera_calibration writes five or eight of a pinhole, and names no model there."""
+    files = {}
+    for side, path in zip(("left", "right"), written(EXAMPLES["ost"], tmp_path), strict=True):
+        lines = path.read_text().splitlines()
+        place = lines.index("distortion") + 1
+        lines[place] = " ".join(lines[place].split()[:4])
+        path.write_text("\n".join(lines) + "\n")
+        files[side] = path
+    rig = load_rig([files["left"], files["right"]])
+    assert (rig.left.model, rig.left.params["k3"]) == ("kannala-brandt", 2e-4)
+    assert "as camera_calibration writes of a fisheye alone" in caplog.text
+
+
+def test_a_fisheye_s_coefficients_of_no_model_are_no_pinhole_s(tmp_path: Path) -> None:
+    for path in (paths := written(EXAMPLES["ros-camera-model"], tmp_path)):
+        path.write_text(path.read_text().replace("camera_model: equidistant\n", ""))
+    with pytest.raises(InvalidInput, match="expected `distortion_model: equidistant` or plumb_bob"):
+        load_rig(paths)
+
+
+def test_coefficients_that_airslam_does_not_use_are_told(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    (path,) = written(EXAMPLES["airslam"], tmp_path)
+    path.write_text(path.read_text().replace("distortion_type: 2", "distortion_type: 0"))
+    assert load_rig(path).left.model == "pinhole"
+    assert "cam0.distortion_coeffs is not used, since distortion_type is 0" in caplog.text

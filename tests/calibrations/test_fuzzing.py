@@ -20,6 +20,7 @@ import numpy as np
 import pytest
 
 from rectbench import RectbenchError, Rig, load_rig
+from rectbench.calibrations import told_already
 from rectbench.calibrations.formats.native import rig_fields
 from rectbench.calibrations.unknown import UnknownFormat
 from rectbench.yaml_text import yaml_text
@@ -111,7 +112,9 @@ def inputs(name: str) -> Iterator[tuple[str, str, bytes]]:
 
 def check_rig_or_one_line(paths: Sequence[Path], options: Mapping[str, Any], what: str) -> None:
     try:
-        assert isinstance(load_rig(paths, **options), Rig)
+        with told_already() as told:
+            assert isinstance(load_rig(paths, **options), Rig)
+        assert all(line.isprintable() for line in told), what
     except RectbenchError as error:
         message = str(error)
         lines = message.split("\n") if isinstance(error, UnknownFormat) else [message]

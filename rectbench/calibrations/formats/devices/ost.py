@@ -2,7 +2,7 @@
 
 Labels stand alone in a line, such as `camera matrix`, above their numbers. Of a pair the first camera is the
 left one. What the numbers mean, and where the pose is, `formats.devices.ros` says; the distortion is
-plumb_bob, or rational_polynomial where there are eight coefficients.
+plumb_bob, rational_polynomial where there are eight coefficients, and a fisheye's where there are four.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from collections.abc import Sequence
 
 from rectbench.calibrations.assembling import rig_of_posed, single
 from rectbench.calibrations.contract import CameraFormat, Given, PosedCamera, RigFormat
-from rectbench.calibrations.documents import Section, Source
+from rectbench.calibrations.documents import Section, Source, tell
 from rectbench.calibrations.formats.devices.ros import posed_of
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig
@@ -26,6 +26,9 @@ LABELS = {
     "projection": "projection_matrix",
 }
 """The labels, and what the YAML of ROS calls the same."""
+
+FISHEYE_COUNT = 4
+"""Coefficients of a fisheye; of a pinhole camera_calibration writes five or eight."""
 
 MAX_LINES = 500
 
@@ -63,7 +66,10 @@ def _posed(source: Source, given: Given) -> list[PosedCamera]:
 
 def _camera(source: Source, place: int, values: dict[str, list[str]]) -> Section:
     sides = {key: words[0] for key, words in values.items() if key.startswith("image_") and len(words) == 1}
-    model = {"distortion_model": "plumb_bob"}
+    is_fisheye = len(values.get("distortion_coefficients", [])) == FISHEYE_COUNT
+    if is_fisheye:
+        tell(f"{source.path}: four distortion coefficients, as camera_calibration writes of a fisheye alone")
+    model = {"distortion_model": "equidistant" if is_fisheye else "plumb_bob"}
     return source.section(values | sides | model, f"camera {place + 1}: " if place else "")
 
 

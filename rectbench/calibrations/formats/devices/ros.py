@@ -27,6 +27,7 @@ from rectbench.calibrations.formats.toolboxes.opencv import (
     COUNTS,
     FOCAL,
     ORDERS,
+    check_pinhole,
     distortion_of,
     opencv_camera,
 )
@@ -74,6 +75,9 @@ def posed_of(file: Section, given: Given) -> PosedCamera:
     width, height = ("image_width", "image_height") if "image_width" in file else ("width", "height")
     size = file.sides(width, height, given.size)
     camera = opencv_camera(file, K, D, lens, size, f"{file.at(K)}, {D}", (0, *COUNTS[lens]))
+    if "distortion_model" not in file and "camera_model" not in file:
+        coefficients = {name: camera.params[name] for name in ORDERS[lens] if name in camera.params}
+        check_pinhole(file.at(D), coefficients, "`distortion_model: equidistant` or plumb_bob", is_usual=True)
     return rectified(PosedCamera(file.where, camera), file, _key(file, "R"), _key(file, "P"))
 
 

@@ -106,7 +106,8 @@ def _disto(section: Section) -> tuple[str, dict[str, float]]:
         return "pinhole", _coefficients(section, DISTORTION)
     if section.values.keys() != set(FISHEYE):
         expected = "k1 k2 k3 k4 of a fisheye, or k1 k2 p1 p2 k3 k4 k5 k6"
-        raise InvalidInput(f"{section.where} has {' '.join(section.values)[:60]}; expected {expected}")
+        found = one_line(" ".join(section.values))[:60]
+        raise InvalidInput(f"{section.where} has {found}; expected {expected}")
     return "kannala-brandt", _coefficients(section, FISHEYE)
 
 

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 
 from rectbench.calibrations.assembling import camera_of, inverse, rig_of_posed, single
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
-from rectbench.calibrations.documents import Section, Source
+from rectbench.calibrations.documents import Section, Source, tell
 from rectbench.calibrations.formats.odometry.kalibr import EQUI, FOCAL, RADTAN
 from rectbench.rigs.rig import Rig
 
@@ -43,6 +43,8 @@ def _read_posed(section: Section, kind: float, size: tuple[int, int]) -> PosedCa
     coefficients = section.numbers("distortion_coeffs", expected, 5)
     if model == "kannala-brandt" and coefficients[4] != 0:
         raise section.fault("distortion_coeffs", expected)
+    if not order and any(coefficients):
+        tell(f"{section.at('distortion_coeffs')} is not used, since distortion_type is 0")
     params |= dict(zip(order, coefficients, strict=False))
     T = section.rigid("T", "the pose of the camera, metres")
     way = section.number("T_type", "0 (from camera to body) or 1 (from body to camera)")
