@@ -106,9 +106,11 @@ class EpipolarPlanes:
         polars = [replace(pencil.polar, along=along, v=rows.framed(first, 1.0)) for pencil in self.pencils]
         reached = [pencil.columns(polar) for pencil, polar in zip(self.pencils, polars, strict=True)]
         least, greatest = np.min(reached), np.max(reached)
-        left, right = (replace(polar, start_px=float(-0.5 - least)) for polar in polars)
+        targets: list[rb.Target] = [replace(polar, start_px=float(-0.5 - least)) for polar in polars]
+        if rows.high - rows.low >= 2 * np.pi:
+            targets = [rb.Wrapped(target, -0.5, last - first) for target in targets]
         size = int(np.ceil(greatest - least)), int(np.ceil(last - first))
-        return rb.Rectification.from_targets(self.rig, left, right, size)
+        return rb.Rectification.from_targets(self.rig, targets[0], targets[1], size)
 
 
 def is_ideal(camera: rb.Camera) -> bool:

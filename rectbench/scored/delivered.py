@@ -51,7 +51,23 @@ class DeliveredSide:
     def shares(self, share: float) -> FloatArray:
         """[M], what each piece holds of A_s, as shares of the view: in all s, where all of it is shown."""
         scored = self.scored
-        return self.pieces.areas_within(scored.middle, scored.edge(share) * scored.reach) / scored.area_px
+        areas = self.pieces.areas_within(scored.middle, scored.edge(share) * scored.reach)
+        return areas * self._outside_cones / scored.area_px
+
+    @cached_property
+    def _outside_cones(self) -> FloatArray:
+        """[M], what share of each piece lies outside the cones that are not scored; by its extents."""
+        camera = self.scored.camera
+        if camera.blind is None:
+            return np.ones(self.pieces.count)
+        middles, axis = self.pieces.middles.T, np.array(camera.blind.axis)
+        along = camera.whole.unproject(middles)[0] @ axis
+        by_px = axis @ camera.whole.unproject_jacobian(middles)
+        reach = np.abs(by_px * self.pieces.halves.T).sum(axis=-1)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            inwards = math.cos(math.radians(camera.blind.within_deg)) - np.abs(along)
+            shares: FloatArray = np.clip(inwards / (2 * reach) + 0.5, 0.0, 1.0)
+        return np.nan_to_num(shares, nan=1.0)
 
 
 @dataclass(frozen=True, eq=False)

@@ -26,6 +26,8 @@ FEWEST_PIECES = 6_000
 """In the source image; where a table has fewer, a finer one of the same map is looked at."""
 LARGEST_TABLE = 2_000_000
 """Entries of a table that is made for this alone."""
+LARGE_SHARE = 1 / 8
+"""Of the image's side; pieces are a tenth as large."""
 ROUNDING_PX = 0.1
 
 
@@ -63,7 +65,7 @@ class Sheet:
     def entries(self, columns: NDArray[np.intp], rows: NDArray[np.intp]) -> FloatArray:
         """Source pixels [K, 2] of the table at columns and rows [K]; NaN where the lens sees nothing."""
         entries = np.stack([layer[rows, columns] for layer in self.table], axis=-1).astype(float)
-        entries[(entries <= OUTSIDE).all(axis=-1)] = np.nan
+        entries[(entries == OUTSIDE).all(axis=-1)] = np.nan
         return entries
 
     def finer(self, entries: float) -> Sheet:
@@ -115,7 +117,8 @@ class Pieces:
         columns, rows = (_spread(side, spacing) for side in sheet.size)
         corners, known = _corners(sheet.table, columns, rows)
         quads = corners[:, :-1, :-1], corners[:, :-1, 1:], corners[:, 1:, :-1], corners[:, 1:, 1:]
-        shows = _shows(quads, known[:-1, :-1] & known[:-1, 1:] & known[1:, :-1] & known[1:, 1:], sheet)
+        knowns = known[:-1, :-1], known[:-1, 1:], known[1:, :-1], known[1:, 1:]
+        shows = _shows(quads, np.stack(knowns), sheet)
         top_left, top_right, low_left, low_right = (corner[:, shows] for corner in quads)
         across = (top_right - top_left + low_right - low_left) / 2
         down = (low_left - top_left + low_right - top_right) / 2
@@ -196,34 +199,37 @@ class Pieces:
         return areas
 
 
-def _shows(quads: Sequence[FloatArray], whole: BoolArray, sheet: Sheet) -> BoolArray:
+def _shows(quads: Sequence[FloatArray], known: BoolArray, sheet: Sheet) -> BoolArray:
     """[R - 1, C - 1], of the quads of these corners [2, R - 1, C - 1] each: which show the source image.
 
-    Those at the rim of what the lens sees are not `whole`; their middles are asked.
+    At the rim of what the lens sees not all corners are `known` [4, R - 1, C - 1]; there the middle is asked.
     """
     camera = sheet.warp.source
     low, high = np.minimum.reduce(quads), np.maximum.reduce(quads)
     with np.errstate(invalid="ignore"):
         shows: BoolArray = np.all((high > -0.5) & (low < np.array(camera.size)[:, None, None] - 0.5), axis=0)
-    _drop_far_sides(shows, quads, high - low, camera)
-    rim = shows & ~whole
+    _drop_far_sides(shows, quads, known, camera)
+    rim = shows & ~known.all(axis=0)
     shows[rim] = camera.unproject(np.mean([corner[:, rim] for corner in quads], axis=0).T)[1]
     return shows
 
 
-def _drop_far_sides(
-    shows: BoolArray, quads: Sequence[FloatArray], extents: FloatArray, camera: Camera
-) -> None:
-    """Of the quads that seem to show the source, those that show none of it are told so.
+def _drop_far_sides(shows: BoolArray, quads: Sequence[FloatArray], known: BoolArray, camera: Camera) -> None:
+    """Mark quads that seem to show the source, and show none of it.
 
     About the direction straight back a model may have pixels all around the image, and a quad there seems to
     hold the image. What it shows is what lies between the rays of its corners.
     """
-    large = np.argwhere(shows & np.any(extents > np.array(camera.size)[:, None, None] / 2, axis=0))
-    corners = np.stack([corner[:, large[:, 0], large[:, 1]].T for corner in quads])
+    extents = np.maximum.reduce(quads) - np.minimum.reduce(quads)
+    with np.errstate(invalid="ignore"):
+        is_large = np.any(extents > LARGE_SHARE * np.array(camera.size)[:, None, None], axis=0)
+    large = np.argwhere(shows & is_large)
+    rows, columns = large.T
+    corners = np.stack([corner[:, rows, columns].T for corner in quads])
+    corners[~known[:, rows, columns]] = np.nan
     off = ~camera.contains(corners).any(axis=0)
     rays = np.nansum(camera.whole.unproject(corners[:, off])[0], axis=0)
-    shows[tuple(large[off].T)] = camera.whole.sees(rays)
+    shows[rows[off], columns[off]] = camera.whole.sees(rays)
 
 
 def _spread(side: int, spacing: float) -> NDArray[np.intp]:
@@ -238,7 +244,7 @@ def _corners(table: Table, columns: NDArray[np.intp], rows: NDArray[np.intp]) ->
     Beside those that are there, one beyond them is guessed: pieces at the rim of what a lens sees count too.
     """
     corners = np.stack([layer[np.ix_(rows, columns)] for layer in table]).astype(float)
-    is_known: BoolArray = np.any(corners > OUTSIDE, axis=0)
+    is_known: BoolArray = np.any(corners != OUTSIDE, axis=0)
     if is_known.all():
         return corners, is_known
     corners[:, ~is_known] = np.nan

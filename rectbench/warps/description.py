@@ -31,7 +31,7 @@ from rectbench.warps.monotone_spline import MonotoneSpline
 from rectbench.warps.planar_polar import PlanarPolar
 from rectbench.warps.profiles import Cubic, FramedProfile, Profile, Radial
 from rectbench.warps.rectification import Rectification
-from rectbench.warps.targets import Epipolar, Framed, Perspective, Target
+from rectbench.warps.targets import Epipolar, Framed, Perspective, Target, Wrapped
 from rectbench.warps.warp import Warp
 from rectbench.writing import write_atomically
 from rectbench.yaml_text import yaml_text
@@ -62,6 +62,8 @@ HEADER = """\
 #                    value_low to 1 at value_high
 #        monotone-spline   value_low + the integral, from the first of the knots, of the quadratic spline
 #                    with these knots and control values (slopes); the outer knots are repeated thrice
+#      wrapped       its target, whose rows go all around the baseline: beyond row start + turn, and before
+#                    row start, they begin again
 #
 # Rows of the two images correspond: v is the same in both. Disparity is u_left - u_right. With gamma_left
 # and gamma_right of two matched pixels, beta of their row and baseline_m = b (below 0 where the right
@@ -173,6 +175,7 @@ TARGETS: Kinds = {
         PlanarPolar,
         {"matrix": MATRIX, "reference": NUMBERS, "v": PROFILE, "along": TEXT, "start_px": NUMBER},
     ),
+    "wrapped": (Wrapped, {"target": TARGET} | dict.fromkeys(("start", "turn"), NUMBER)),
     "framed": (Framed, {"target": TARGET} | dict.fromkeys(("left", "top", "across", "down"), NUMBER)),
 }
 PROFILES: Kinds = {

@@ -19,7 +19,7 @@ from rectbench.warps.frame import rectifying_rotations, signed_baseline_m
 from rectbench.warps.lookup.resampling import Filter, Resampler, Side
 from rectbench.warps.lookup.tables import Table, lookup_table, reads_source
 from rectbench.warps.profiles import Profile
-from rectbench.warps.targets import Epipolar, Target
+from rectbench.warps.targets import Epipolar, Target, Wrapped
 from rectbench.warps.view.extent import Range, ViewAngles, view_angles
 from rectbench.warps.warp import Warp
 
@@ -103,7 +103,8 @@ class Rectification:
         difference of their columns stays what the profiles make it.
 
         `view` are the angles that are shown, those of the rig's whole view where it is left out; of these
-        each profile shows what lies in its range. Raises InvalidInput where they span no finite image.
+        each profile shows what lies in its range; where they go all around the baseline the rows begin again
+        beyond the last one, see `turn_px`. Raises InvalidInput where they span no finite image.
 
         >>> import rectbench as rb
         >>> u, v = rb.Radial("stereographic", 300.0, 0.0), rb.Radial("equidistant", 300.0, 0.0)
@@ -117,7 +118,9 @@ class Rectification:
         start = min(left[0], right[0])
         size = _whole_size(max(left[1], right[1]) - start, rows[1] - rows[0])
         v = v.framed(rows[0], 1.0)
-        targets = [Epipolar(u.framed(start, 1.0), v) for u in (u_left, u_right)]
+        targets: list[Target] = [Epipolar(u.framed(start, 1.0), v) for u in (u_left, u_right)]
+        if min(-view.beta.low, -v.low, view.beta.high, v.high) >= math.pi:
+            targets = [Wrapped(target, -0.5, rows[1] - rows[0]) for target in targets]
         return cls.from_targets(rig, targets[0], targets[1], size, notes)
 
     @property

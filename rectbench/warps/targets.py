@@ -182,6 +182,48 @@ class Epipolar(Target):
         return sin_gamma, cos_gamma * sin_beta, cos_gamma * cos_beta, cos_gamma >= 0.0
 
 
+@dataclass(frozen=True, eq=False)
+class Wrapped(Target):
+    """A target whose rows go all around the baseline: beyond the last one the first ones come again.
+
+    A ray has one place, in rows `start` to `start + turn`; pixels beyond those show once more what is there.
+
+    >>> import rectbench as rb
+    >>> rows = rb.Radial("equidistant", 100.0, 0.0)
+    >>> target = rb.Wrapped(rb.Epipolar(rows, rows), -314.0, 628.0)
+    >>> target.unproject([[0.0, -10.0], [0.0, 618.0]])[0].round(3)
+    array([[ 0.  , -0.1 ,  0.995],
+           [ 0.  , -0.1 ,  0.995]])
+    """
+
+    target: Target
+    start: float
+    """The row of β = -180°, its upper edge."""
+    turn: float
+    """Rows from there to β = 180°."""
+
+    @property
+    def constants(self) -> Constants:
+        return {"target": self.target.constants, "start": self.start, "turn": self.turn}
+
+    def framed(self, left: float, top: float, across: float, down: float) -> Wrapped:
+        start = (self.start - top) * down - 0.5
+        return Wrapped(self.target.framed(left, top, across, down), start, self.turn * down)
+
+    def project_formula(self, c: Any, x: Any, y: Any, z: Any, xp: Formulas) -> tuple[Any, Any, Any]:
+        return self.target.project_formula(c.target, x, y, z, xp)
+
+    def unproject_formula(self, c: Any, u: Any, v: Any, xp: Formulas) -> tuple[Any, Any, Any, Any]:
+        return self.target.unproject_formula(c.target, u, v - c.turn * xp.floor((v - c.start) / c.turn), xp)
+
+    def axis_tables(self, columns: FloatArray, rows: FloatArray) -> tuple[Axis, Axis]:
+        rows = rows - self.turn * np.floor((rows - self.start) / self.turn)
+        return self.target.axis_tables(columns, rows)
+
+    def ray_formula(self, c: Any, column: Any, row: Any, xp: Formulas) -> tuple[Any, Any, Any, Any]:
+        return self.target.ray_formula(c.target, column, row, xp)
+
+
 def in_range(c: Any, angle: Any) -> Any:
     """Mask of the angles that a profile with the constants c has."""
     return (angle >= c.low - ANGLE_SLACK_RAD) & (angle <= c.high + ANGLE_SLACK_RAD)

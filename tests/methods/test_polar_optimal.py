@@ -148,7 +148,7 @@ def test_its_slopes_about_an_epipole_are_the_closed_form() -> None:
     assert rect.notes["log_distortion"] == pytest.approx(np.sqrt(log_r.var() / 2), rel=0.01)
     gamma = np.radians(np.linspace(40, 85, 10))
     for warp in (rect.left, rect.right):
-        u, v = warp.target.u, warp.target.v
+        u, v = warp.target.target.u, warp.target.target.v
         np.testing.assert_allclose((u(gamma + 1e-4) - u(gamma - 1e-4)) / 2e-4, focal, rtol=0.02)
         beta = np.linspace(-3, 3, 13)
         slope = (v(beta + 1e-4) - v(beta - 1e-4)) / 2e-4

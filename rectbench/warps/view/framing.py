@@ -17,6 +17,7 @@ from rectbench.errors import InvalidInput, Unsupported
 from rectbench.types import FloatArray
 from rectbench.warps.frame import angles, centre_resolution_px, rectifying_rotations
 from rectbench.warps.rectification import LARGEST_SIDE_PX, Rectification
+from rectbench.warps.targets import Perspective
 from rectbench.warps.view.extent import centre_rays
 from rectbench.warps.view.inscribed import largest_rectangle
 from rectbench.warps.view.sampling import evaluation_pixels, outline_pixels
@@ -26,6 +27,8 @@ COVERAGE_PIXELS = 40_000
 """Source pixels an image by which coverage is counted."""
 LARGEST_PIXELS = 200e6
 """A larger rectified image is refused: its lookup tables alone would take gigabytes."""
+WRAPPED_SHARE = 10 / 360
+"""Of the rows that go all around, as many are repeated beyond either end of them."""
 VALID_INSET_PX = 0.501
 FORWARD = np.array([0.0, 0.0, 1.0])
 
@@ -70,6 +73,11 @@ class Framing:
         perspective image; or "source", that of the source images at their centres.
     pixels : a budget: an image of more pixels is made smaller.
 
+    And where the rows go all around the baseline, as of a view that holds an epipole:
+
+    seam : "cut", the image ends at β = ±180°; or "wrap", a thirty-sixth of the rows is repeated beyond
+        either end, so that what lies at the seam is there in one piece too. Elsewhere both are the same.
+
     Raises InvalidInput for values that are none, or that contradict each other.
 
     >>> import rectbench as rb
@@ -83,6 +91,7 @@ class Framing:
     size: tuple[int, int] | None = None
     focal_px: float | Literal["source"] | None = None
     pixels: float | None = None
+    seam: Literal["cut", "wrap"] = "cut"
 
     def __post_init__(self) -> None:
         stated = [name for name in ("crop", "fov_deg", "coverage") if getattr(self, name) is not None]
@@ -100,6 +109,10 @@ class Framing:
         if self.focal_px != "source":
             _check_numbers("focal_px", self.focal_px, 1, "a number of pixels above 0, or source", 0)
         _check_numbers("pixels", self.pixels, 1, "a number of pixels above 1", 1)
+        if self.seam not in ("cut", "wrap"):
+            raise InvalidInput(f"seam is {self.seam!r}; expected cut or wrap")
+        if self.seam == "wrap" and stated:
+            raise InvalidInput(f"seam wrap stands beside {stated[0]}; expected it where all is shown")
         if self.coverage is not None and not (_is_number(self.coverage) and 0 < self.coverage <= 1):
             raise InvalidInput(f"coverage is {self.coverage!r}; expected a share above 0, at most 1")
 
@@ -195,7 +208,17 @@ def _window(rect: Rectification, framing: Framing) -> Window:
     if framing.coverage is not None:
         return _covering_window(rect, framing.coverage)
     width, height = rect.size
-    return Window(-0.5, -0.5, width - 0.5, height - 0.5)
+    beyond = _rows_beyond_seam(rect) if framing.seam == "wrap" else 0.0
+    return Window(-0.5, -0.5 - beyond, width - 0.5, height - 0.5 + beyond)
+
+
+def _rows_beyond_seam(rect: Rectification) -> float:
+    """How many rows are repeated at either end; 0 where the rows do not go all around the baseline."""
+    if isinstance(rect.left.target, Perspective):
+        raise InvalidInput(
+            "seam is 'wrap', but a perspective image has none: it shows one half of space; expected cut"
+        )
+    return WRAPPED_SHARE * (rect.turn_px or 0.0)
 
 
 def _valid_window(rect: Rectification) -> Window:
