@@ -29,6 +29,7 @@ from .experiments.spec import Group as Group
 from .experiments.spec import Report as Report
 from .formulas.protocol import Formulas as Formulas
 from .images.stereo_pair import StereoPair as StereoPair
+from .margin import MARGIN_DEG as MARGIN_DEG
 from .matching import BoardMatches as BoardMatches
 from .matching import PoseEstimate as PoseEstimate
 from .matching import Reconstruction as Reconstruction
@@ -60,7 +61,6 @@ from .rendering.world import Material as Material
 from .rendering.world import Mesh as Mesh
 from .rendering.world import Sun as Sun
 from .rendering.world import World as World
-from .rigs import MARGIN_DEG as MARGIN_DEG
 from .rigs import Rig as Rig
 from .rigs import RigCovariance as RigCovariance
 from .scored import Delivered as Delivered

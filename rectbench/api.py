@@ -18,10 +18,11 @@ from rectbench.applications.requests.rendering import ExportRequest, RenderReque
 from rectbench.applications.requests.request import SeededMethodRequest
 from rectbench.applications.requests.running import PlanRequest, RunRequest
 from rectbench.calibrations.reading import RigSource
+from rectbench.margin import MARGIN_DEG
 from rectbench.matching.features.matches import RATIO
 from rectbench.matching.pose.estimate import POSE_PIXELS, PoseEstimate
 from rectbench.plugins.defaults import DEFAULT_METHOD
-from rectbench.rigs import MARGIN_DEG, Rig
+from rectbench.rigs import Rig
 from rectbench.warps import Framing, Rectification
 
 if TYPE_CHECKING:
@@ -271,6 +272,7 @@ def run(
     seeds: Sequence[int] | None = None,
     data: str | Path | None = None,
     options: Mapping[str, Mapping[str, Any]] | None = None,
+    margin_deg: float | None = None,
     jobs: int | None = None,
     dask: str | None = None,
     fresh: bool = False,
@@ -287,6 +289,8 @@ def run(
         it says "none".
     data : the folder of photographs, for a report that takes them, such as "real".
     options : options by method and name, laid over the report's.
+    margin_deg : nearer to the epipoles than this views are trimmed, see `rectify`; the report's own margin by
+        default.
     jobs : worker processes; as many as there are cores by default.
     dask : the address of a dask scheduler, on whose cluster it runs.
     fresh : make again what the store has of this run.

@@ -16,11 +16,12 @@ import pandas as pd
 
 from rectbench.errors import InvalidInput, Unsupported
 from rectbench.experiments.execution.outcomes import outcome_of
+from rectbench.margin import MARGIN_DEG
 from rectbench.metrics import frame_costs, row_error, row_misfit
 from rectbench.plugins.fitting import checked_options, fit
 from rectbench.plugins.rectifier import METHODS, Problem, Rectifier, pose_problem
 from rectbench.registry import Plugin, registry
-from rectbench.rigs import MARGIN_DEG, Rig
+from rectbench.rigs import Rig
 from rectbench.scored import Delivered, ScoredPixels, ScoredView, check_agreement
 from rectbench.scored.differences import differences
 from rectbench.types import BoolArray, FloatArray, Images, Matches

@@ -18,7 +18,14 @@ if TYPE_CHECKING:
 
 def run_report(request: RunRequest, progress: bool | None = None) -> pd.DataFrame:
     """The rows of the run, see `runs.making.run`."""
-    chosen = Selection(request.methods, request.scenes, request.rigs, request.seeds, request.options)
+    chosen = Selection(
+        request.methods,
+        request.scenes,
+        request.rigs,
+        request.seeds,
+        request.options,
+        request.margin_deg,
+    )
     with workers_for(find_report(request.report), request.jobs) as workers:  # for cells, then for figures
         table = making.run(
             request.report,

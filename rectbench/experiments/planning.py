@@ -15,6 +15,7 @@ from rectbench.experiments.pair_sources import PairSource, StatedPart
 from rectbench.experiments.selecting import OwnNames, Selection, own_names, selected, selects_all
 from rectbench.experiments.spec import REPORTS, Report
 from rectbench.experiments.tasks import CellTask
+from rectbench.margin import checked_margin
 from rectbench.metrics.scoring import metrics_of, needs_of
 from rectbench.pairs.finding.photographs import Photographs
 from rectbench.pairs.spec import ESTIMATED, PairSpec
@@ -60,6 +61,8 @@ def make_plan(report: Report, selection: Selection | None = None, data: str | Pa
     not, and for a folder without pairs.
     """
     chosen = selection or Selection()
+    if chosen.margin_deg is not None:
+        report = report.model_copy(update={"margin_deg": checked_margin(chosen.margin_deg)})
     sources = [source.located(report.name, data) for source in report.sources]
     if chosen.scenes is not None and not any("scenes" in source.selects for source in sources):
         raise InvalidInput(f"report {report.name} is of lenses without a scene; expected no --scenes")
@@ -90,7 +93,8 @@ def _tasks_of(source: PairSource, report: Report, own: OwnNames, chosen: Selecti
     option_sets = _option_sets(part.options, chosen, [plugin for plugin, _ in methods])
     levels = {plugin.name: source.match_levels(plugin.value.needs) for plugin, _ in methods}
     metrics = tuple(_measurable(part, source))
-    for pair in source.specs(_demanding(part, source, levels, [plugin.value for plugin, _ in methods])):
+    demanding = _demanding(part, source, levels, [plugin.value for plugin, _ in methods])
+    for pair in (_with_view(spec, report) for spec in source.specs(demanding)):
         for pose, (method, method_source) in itertools.product(part.poses, methods):
             for matches, options in itertools.product(levels[method.name], option_sets[method.name]):
                 if not source.has_cell(part, pair.seed, pose, matches):
@@ -116,6 +120,16 @@ def _tasks_of(source: PairSource, report: Report, own: OwnNames, chosen: Selecti
                     group=part.name,
                     alone=part.alone,
                 )
+
+
+def _with_view(spec: PairSpec, report: Report) -> PairSpec:
+    """The pair with the part of its view that the report looks at."""
+    seen: dict[str, float] = {}
+    if report.margin_deg is not None:
+        seen["margin_deg"] = report.margin_deg
+    if spec.rig in report.max_angle_deg:
+        seen["max_angle_deg"] = report.max_angle_deg[spec.rig]
+    return spec.model_copy(update=seen)
 
 
 def _servable(part: StatedPart, source: PairSource) -> list[tuple[Plugin[Rectifier], str]]:

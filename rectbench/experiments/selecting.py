@@ -26,6 +26,8 @@ class Selection:
     seeds: Sequence[int] | None = None
     options: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     """By method; laid over the report's own."""
+    margin_deg: float | None = None
+    """How near to the epipoles views are trimmed; the report's own margin where left out."""
 
     def __post_init__(self) -> None:
         for name in ("methods", "scenes", "rigs"):
@@ -58,8 +60,10 @@ def own_names(source: PairSource, sources: Sequence[PairSource]) -> OwnNames:
 
 def selects_all(chosen: Selection, own: OwnNames) -> bool:
     """Whether all that a report names itself is selected, under its own options."""
-    return not chosen.options and all(
-        set(names) <= set(_chosen_names(getattr(chosen, kind), names)) for kind, names in own.items()
+    return (
+        not chosen.options
+        and chosen.margin_deg is None
+        and all(set(names) <= set(_chosen_names(getattr(chosen, kind), names)) for kind, names in own.items())
     )
 
 

@@ -19,6 +19,7 @@ from rectbench.experiments.pair_sources import (
     Rendering,
     StatedPart,
 )
+from rectbench.margin import WIDEST_MARGIN_DEG
 from rectbench.pairs.spec import CALIBRATED, ESTIMATED, NO_SCENE
 from rectbench.plugins.matches import FROM_IMAGES, match_level
 from rectbench.registry import is_path
@@ -197,6 +198,10 @@ class Report(StatedPairs, Rendering, GivenMatches, CellLimits):
     photographs: calibrated, or estimated."""
     seeds: Seeds = (0,)
     """Repetitions; of lenses alone, of what a seed draws: perturbed poses and the noise of matches."""
+    margin_deg: float | None = Field(default=None, gt=0, le=WIDEST_MARGIN_DEG)
+    """How near to the epipoles views are trimmed before any method sees them; the usual margin by default."""
+    max_angle_deg: Mapping[str, float] = Field(default_factory=dict)
+    """Image circles of rigs by their names, in the place of their own; lenses show nothing beyond."""
     metrics: tuple[str, ...] = ("geometry", "row_error", "timing")
     """What is measured: metrics, by name or path. `geometry` is all that needs neither image nor match.
     Nothing is rendered or computed that none of these asks for."""

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 
+from rectbench.margin import MARGIN_DEG
 from rectbench.metrics.distortion import distortion_column
 from rectbench.metrics.row_misfit import case_row_misfit, row_misfit
 from rectbench.plugins.metric import Case, Column, Metric, Tolerance
-from rectbench.rigs import MARGIN_DEG, Rig
+from rectbench.rigs import Rig
 from rectbench.scored import SHARES, Delivered, ScoredView
 from rectbench.warps import Rectification
 from rectbench.warps.jacobians import Jacobians, LogStretches

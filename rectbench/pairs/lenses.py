@@ -8,11 +8,10 @@ from typing import NoReturn
 
 import numpy as np
 
-from rectbench.calibrations import load_rig
 from rectbench.errors import InvalidInput
 from rectbench.images.stereo_pair import StereoPair
 from rectbench.pairs.pair import Pair
-from rectbench.pairs.rendering import placed
+from rectbench.pairs.rendering import calibrated_rig, placed
 from rectbench.pairs.rig_numbers import rig_numbers
 from rectbench.pairs.spec import LensSpec
 from rectbench.plugins.rectifier import matches_from_pose
@@ -38,7 +37,7 @@ class LensPair(Pair):
     @cached_property
     def rig(self) -> Rig:
         spec = self.spec
-        return placed(load_rig(spec.rig_source), spec.scene, spec.motion, ONE_POSE, spec.image_width)
+        return placed(calibrated_rig(spec), spec.scene, spec.motion, ONE_POSE, spec.image_width)
 
     @cached_property
     def inputs(self) -> Inputs:

@@ -10,6 +10,7 @@ from typing import ClassVar
 
 from rectbench.errors import InvalidInput, PoseNotFound
 from rectbench.images.stereo_pair import StereoPair
+from rectbench.margin import MARGIN_DEG
 from rectbench.matching import BoardMatches, PoseEstimate, board_matches
 from rectbench.metrics.row_error import SCORED_MATCHES
 from rectbench.metrics.timing import warm_seconds
@@ -46,10 +47,15 @@ class Pair(ABC):
     def rig(self) -> Rig:
         """The true rig; of photographs the calibrated one."""
 
+    @property
+    def margin_deg(self) -> float:
+        """How near to its epipoles the view is trimmed, degrees."""
+        return MARGIN_DEG if self.spec.margin_deg is None else self.spec.margin_deg
+
     @cached_property
     def scored_view(self) -> ScoredView:
         """The source pixels that rectifications are scored on, the same for all methods."""
-        return ScoredView.of(self.rig)
+        return ScoredView.of(self.rig, margin_deg=self.margin_deg)
 
     @cached_property
     def seen_view(self) -> SeenView:

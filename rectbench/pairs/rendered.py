@@ -9,13 +9,12 @@ from pathlib import Path
 
 import numpy as np
 
-from rectbench.calibrations import load_rig
 from rectbench.errors import Unavailable
 from rectbench.images.stereo_pair import StereoPair
 from rectbench.matching import match_features
 from rectbench.matching.pose.consistent import SCORING_PIXELS
 from rectbench.pairs.pair import Pair
-from rectbench.pairs.rendering import IMAGES, TRUTH, TRUTH_FILE, Studio, placed, truth_inputs
+from rectbench.pairs.rendering import IMAGES, TRUTH, TRUTH_FILE, Studio, calibrated_rig, placed, truth_inputs
 from rectbench.pairs.spec import RenderedSpec
 from rectbench.rendering.truth import Truth
 from rectbench.rigs import Rig
@@ -40,7 +39,7 @@ class RenderedPair(Pair):
     @cached_property
     def rig(self) -> Rig:
         spec = self.spec
-        return placed(load_rig(spec.rig_source), spec.scene, spec.motion, spec.seed, spec.image_width)
+        return placed(calibrated_rig(spec), spec.scene, spec.motion, spec.seed, spec.image_width)
 
     @cached_property
     def inputs(self) -> Inputs:

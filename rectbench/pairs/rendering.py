@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from rectbench.calibrations import load_rig
 from rectbench.errors import UnknownName
 from rectbench.pairs.rig_numbers import rig_numbers
-from rectbench.pairs.spec import RenderedSpec
+from rectbench.pairs.spec import LensSpec, RenderedSpec
 from rectbench.plugins.scene import SCENES
 from rectbench.registry import registry
 from rectbench.rigs import Rig
@@ -25,6 +25,12 @@ if TYPE_CHECKING:
 TRUTH, IMAGES, TRUTH_FILE = "truth", "images", "truth.npz"
 """Kinds of the store, as `RenderedSpec.demands` calls them, and the file of the one."""
 RENDERING_PACKAGES = ("numpy", "scipy", "opencv-contrib-python-headless", "mitsuba", "drjit")
+
+
+def calibrated_rig(spec: RenderedSpec | LensSpec) -> Rig:
+    """The rig that is meant, as its file states it but for an image circle that is stated beside it."""
+    rig = load_rig(spec.rig_source)
+    return rig if spec.max_angle_deg is None else rig.within(spec.max_angle_deg)
 
 
 def placed(rig: Rig, scene: str, motion: str, seed: int, image_width: int | None) -> Rig:
@@ -49,7 +55,7 @@ def truth_inputs(spec: RenderedSpec) -> Inputs:
     return {
         "scene": spec.scene,
         "scene_source": registry(SCENES).get(spec.scene_source).digest,
-        "rig": rig_numbers(load_rig(spec.rig_source)),
+        "rig": rig_numbers(calibrated_rig(spec)),
         "image_width": spec.image_width,
         "motion": spec.motion,
         "seed": spec.seed,

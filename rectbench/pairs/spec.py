@@ -21,6 +21,8 @@ class _Spec(BaseModel):
     rig: str
     motion: str
     seed: int
+    margin_deg: float | None = None
+    """How near to its epipoles its view is trimmed; the usual margin where left out."""
 
     @property
     def demands(self) -> frozenset[str]:
@@ -46,6 +48,8 @@ class RenderedSpec(_Spec):
     """Whether anything asks for the truth."""
     images: bool
     """Whether anything asks for the rendered images."""
+    max_angle_deg: float | None = None
+    """The lenses' image circle, in the place of the rig's own."""
 
     @property
     def demands(self) -> frozenset[str]:
@@ -81,6 +85,8 @@ class LensSpec(_Spec):
     rig_source: str
     """The rig's name, or the absolute path of its file."""
     image_width: int | None
+    max_angle_deg: float | None = None
+    """The lenses' image circle, in the place of the rig's own."""
 
 
 PairSpec = Annotated[RenderedSpec | PhotographedSpec | LensSpec, Field(discriminator="kind")]

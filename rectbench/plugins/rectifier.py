@@ -14,8 +14,9 @@ from typing_extensions import TypeVar
 
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
+from rectbench.margin import MARGIN_DEG
 from rectbench.registry.kind import Described, Kind, described_object
-from rectbench.rigs import MARGIN_DEG, Rig
+from rectbench.rigs import Rig
 from rectbench.types import FloatArray, Images, Matches
 from rectbench.warps.frame import rectifying_rotations
 from rectbench.warps.rectification import Rectification

@@ -6,6 +6,5 @@ from rectbench.rigs.motions import Motion as Motion
 from rectbench.rigs.poses import POSES as POSES
 from rectbench.rigs.poses import PoseNoise as PoseNoise
 from rectbench.rigs.poses import perturb as perturb
-from rectbench.rigs.rig import MARGIN_DEG as MARGIN_DEG
 from rectbench.rigs.rig import Rig as Rig
 from rectbench.rigs.saving import written_formats as written_formats

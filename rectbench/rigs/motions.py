@@ -16,13 +16,15 @@ SIDEWAYS_ROTATION_DEG = 2.0
 """Most that the right camera of a `sideways` rig turns about each axis."""
 SIDEWAYS_SHIFT = 0.03
 """Most that it stands off the x axis in y and z, as a share of the baseline. Turn and shift together
-move an epipole by less than 4 degrees, so a lens that ends at 86 degrees keeps both out of view."""
+move an epipole by less than 4 degrees."""
 JITTER_DEG = 0.5
 """Most that the seed turns the right camera of the other motions about each axis."""
 WIDE_FACTOR = 3.0
 WIDE_LIMIT_M = 1.5
 TOE_IN_DEG = 6.0
 ROLL_DEG = 10.0
+APART_DEG = (30, 60, 90)
+"""Turns of the right camera away from the left one, about the axis that points down."""
 
 Placing = Callable[[float, np.random.Generator], tuple[Rotation, FloatArray]]
 """From the rig's baseline in metres to the right camera's axes and centre [3], both in left coordinates."""
@@ -73,6 +75,23 @@ def _rolled(baseline_m: float, rng: np.random.Generator) -> tuple[Rotation, Floa
     return Rotation.from_euler("z", ROLL_DEG, degrees=True) * _jitter(rng), _along_x(baseline_m)
 
 
+def _towards(*direction: float) -> Placing:
+    """The right camera stands in that direction from the left one, and looks where that looks."""
+    unit = np.array(direction) / np.linalg.norm(direction)
+
+    def placing(baseline_m: float, rng: np.random.Generator) -> tuple[Rotation, FloatArray]:
+        return _jitter(rng), baseline_m * unit
+
+    return placing
+
+
+def _apart(angle_deg: float) -> Placing:
+    def placing(baseline_m: float, rng: np.random.Generator) -> tuple[Rotation, FloatArray]:
+        return Rotation.from_euler("y", angle_deg, degrees=True) * _jitter(rng), _along_x(baseline_m)
+
+    return placing
+
+
 def _jitter(rng: np.random.Generator) -> Rotation:
     return Rotation.from_rotvec(rng.uniform(-JITTER_DEG, JITTER_DEG, 3), degrees=True)
 
@@ -98,6 +117,14 @@ MOTIONS = {
         ),
         Motion("toed-in", f"the right camera turned in by {TOE_IN_DEG:g} degrees", _toed_in),
         Motion("rolled", f"the right camera rolled clockwise by {ROLL_DEG:g} degrees", _rolled),
+        Motion("forward", "the right camera ahead of the left one", _towards(0.0, 0.0, 1.0)),
+        Motion("backward", "the right camera behind the left one", _towards(0.0, 0.0, -1.0)),
+        Motion("diagonal", "the right camera to the right and ahead, as far", _towards(1.0, 0.0, 1.0)),
+        Motion("vertical", "the right camera below the left one", _towards(0.0, 1.0, 0.0)),
+        *(
+            Motion(f"apart-{angle}", f"the right camera turned out by {angle} degrees", _apart(angle))
+            for angle in APART_DEG
+        ),
     )
 }
 """The motions by name."""

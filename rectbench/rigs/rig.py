@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from rectbench.cameras import Camera, Cones
 from rectbench.cameras.projection import as_points
 from rectbench.errors import InvalidInput
+from rectbench.margin import MARGIN_DEG, checked_margin
 from rectbench.types import FloatArray
 
 ROTATION_TOLERANCE = 1e-5
@@ -22,8 +23,6 @@ EXACT_ROTATION = 1e-14
 """Below this RᵀR - 1 is float64 rounding, and the matrix is kept to the last bit."""
 
 
-MARGIN_DEG = 7.0
-WIDEST_MARGIN_DEG = 45.0
 RIM_POINTS = 257
 """On each side of an image, to tell whether a corner of it reaches into the cones."""
 
@@ -220,16 +219,6 @@ class Rig:
         'kannala-brandt'
         """
         return Rig.writer(self, path, format)
-
-
-def checked_margin(margin_deg: Any) -> float:
-    """The margin as a float; InvalidInput for what is no angle above 0 and up to 45 degrees."""
-    is_real = isinstance(margin_deg, int | float | np.number) and not isinstance(margin_deg, bool)
-    if not is_real or not 0 < margin_deg <= WIDEST_MARGIN_DEG:
-        raise InvalidInput(
-            f"margin_deg is {margin_deg!r}; expected degrees above 0, at most {WIDEST_MARGIN_DEG:g}"
-        )
-    return float(margin_deg)
 
 
 def _blind_about(camera: Camera, direction: FloatArray, margin_deg: float) -> Camera:

@@ -227,6 +227,8 @@ def _command(plan: Plan) -> str:
         chosen = getattr(plan.selection, name)
         if chosen is not None:
             words += [f"--{name}", ",".join(map(str, chosen))]
+    if plan.selection.margin_deg is not None:
+        words += ["--margin-deg", f"{plan.selection.margin_deg:g}"]
     for method, options in plan.selection.options.items():
         words += [f"--option {method}.{name}={canonical_json(value)}" for name, value in options.items()]
     return " ".join(words)

@@ -17,8 +17,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from rectbench.cameras import Camera
 from rectbench.cameras.projection import as_points
-from rectbench.rigs import MARGIN_DEG, Rig
-from rectbench.rigs.rig import WIDEST_MARGIN_DEG, checked_margin
+from rectbench.margin import MARGIN_DEG, WIDEST_MARGIN_DEG, checked_margin
+from rectbench.rigs import Rig
 from rectbench.store.keys import derived_seed
 from rectbench.types import BoolArray, FloatArray
 from rectbench.warps.lookup.resampling import Side

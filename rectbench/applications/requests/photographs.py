@@ -52,6 +52,11 @@ class FramingRequest(Request):
         parse=words.focal_in,
     )
     pixels: float | None = word("Budget: a larger image is made smaller.", metavar="NUMBER")
+    seam: Literal["cut", "wrap"] = word(
+        "Where rows go all around the epipoles: cut there, or repeat some rows beyond.",
+        default="cut",
+        metavar="cut|wrap",
+    )
 
 
 class RectifyRequest(FramingRequest, OptionsRequest, RigRequest):

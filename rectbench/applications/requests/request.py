@@ -12,9 +12,8 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationEr
 
 from rectbench.applications.requests.words import options_in, size_in
 from rectbench.errors import InvalidInput, RectbenchError
+from rectbench.margin import MARGIN_DEG, checked_margin
 from rectbench.plugins.defaults import DEFAULT_METHOD
-from rectbench.rigs import MARGIN_DEG
-from rectbench.rigs.rig import checked_margin
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,7 @@ from typing import Annotated, Any
 
 from pydantic import ConfigDict, StrictBool, model_validator
 
-from rectbench.applications.requests.request import Request, Text, number, positional, word
+from rectbench.applications.requests.request import Margin, Request, Text, number, positional, word
 from rectbench.applications.requests.words import (
     OptionSets,
     listed,
@@ -51,6 +51,9 @@ class RunRequest(Request):
     jobs: Jobs | None = word("Worker processes; one a core by default.")
     dask: str | None = word("Run on this dask scheduler's cluster.", metavar="ADDRESS")
     fresh: StrictBool = word("Make again what the store has of this run.", default=False)
+    margin_deg: Margin | None = word(
+        "Nearer to the epipoles than this views are trimmed; the report's own by default.", metavar="DEGREES"
+    )
     config: Path | None = word("TOML with [run] and [methods.NAME]; the command line wins.")
     options: OptionSets = word(
         "An option of a method; repeatable.",

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from rectbench.experiments.execution.outcomes import LASTING, Outcome, outcome_of
 from rectbench.experiments.tasks import CellTask
+from rectbench.margin import MARGIN_DEG
 from rectbench.metrics.scoring import digests_of, needs_of, score
 from rectbench.metrics.timing import timed
 from rectbench.metrics.view import PROJECTION
@@ -70,6 +71,7 @@ def cell_inputs(task: CellTask, pair: Pair) -> Inputs:
         "match_count": task.match_count if true_noise_px(task.cell.matches) is not None else None,
         "code": code_digest(__name__),
         "versions": dict(versions(*MEASURING_PACKAGES)),
+        **({} if pair.margin_deg == MARGIN_DEG else {"margin_deg": pair.margin_deg}),
     }
 
 
@@ -127,6 +129,7 @@ def problem_of(task: CellTask, pair: Pair) -> Problem:
         matches=pair.given_matches(cell.matches, task.match_count) if cell.matches else None,
         images=Images(pair.images.left, pair.images.right) if "images" in needs else None,
         seed=pair.seed_of("method", cell.pose, cell.method),
+        margin_deg=pair.margin_deg,
     )
 
 

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from rectbench.margin import MARGIN_DEG
 from rectbench.metrics.coverage import TRIMMED, coverage
 from rectbench.metrics.log_distortion import log_distortion
 from rectbench.metrics.sampling import sampling
-from rectbench.rigs import MARGIN_DEG, Rig
+from rectbench.rigs import Rig
 from rectbench.scored import Delivered, ScoredView
 from rectbench.warps import Rectification, centre_resolution_px
 from rectbench.warps.view.framing import focal_px
