@@ -1,4 +1,4 @@
-"""One camera before the other in a corridor: matches that are right to a sixteenth of a pixel give its shape."""
+"""A camera before the other in a corridor: matches right to a sixteenth of a pixel give its shape."""
 
 from functools import cache
 
