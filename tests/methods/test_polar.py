@@ -193,3 +193,18 @@ def test_all_of_the_trimmed_view_is_shown_by_maps_that_agree(method: str, motion
         delivered = rb.Delivered.of(rect, rb.ScoredView.of(trimmed))
         check_agreement(rect, delivered)
         assert delivered.keeps(1.0)
+
+
+@pytest.mark.parametrize("method", ["polar", "log-polar"])
+@pytest.mark.parametrize("name", ["pinhole-toed-in", "pinhole-rolled", "pinhole-unequal"])
+def test_what_is_far_away_has_about_the_same_columns_in_planes_too(method: str, name: str) -> None:
+    # The epipoles of cameras that are turned towards each other lie on opposite sides of their images.
+    pair = rb.load_rig(name)
+    rect = rb.rectify(pair, method, form="planar")
+    far = 1e4 * pair.left.unproject(rb.evaluation_pixels(pair.left))[0]
+    px_right, seen = pair.right.project(pair.right_from_left(far))
+    both = seen & pair.right.contains(px_right)
+    apart = rect.left.forward(rb.evaluation_pixels(pair.left)[both]) - rect.right.forward(px_right[both])
+    assert abs(np.median(apart[:, 0])) < 1
+    assert rect.size[0] < 1.6 * pair.left.width
+    assert (rect.valid("left") & rect.valid("right")).mean() > 0.3
