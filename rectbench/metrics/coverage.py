@@ -19,6 +19,15 @@ TRIMMED = "trimmed"
 """The column that is there where anything is trimmed."""
 
 
+def trimmed_text(share: float, margin_deg: float) -> str:
+    """How much of the view was trimmed, and where, in one line.
+
+    >>> trimmed_text(0.031, 7.0)
+    'trimmed: 3.1 % of the source pixels, within 7° of the epipoles'
+    """
+    return f"{TRIMMED}: {100 * share:.2g} % of the source pixels, within {margin_deg:g}° of the epipoles"
+
+
 def coverage(rect: Rectification, rig: Rig) -> dict[str, float]:
     """Shares kept of the source pixels, of their solid angle, of the overlap; share of output valid.
 

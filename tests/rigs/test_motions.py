@@ -64,7 +64,37 @@ def test_rolled_turns_about_the_axis(rig: Rig) -> None:
         assert (moved.R_right_left.T @ [0, 0, 1])[2] > np.cos(np.radians(0.9))
 
 
-@pytest.mark.parametrize("name", ["sideways", "wide", "toed-in", "rolled"])
+@pytest.mark.parametrize(
+    ("name", "direction"),
+    [
+        ("forward", (0, 0, 1)),
+        ("backward", (0, 0, -1)),
+        ("diagonal", (np.sqrt(0.5), 0, np.sqrt(0.5))),
+        ("vertical", (0, 1, 0)),
+    ],
+)
+def test_the_right_camera_stands_where_the_motion_says(
+    rig: Rig, name: str, direction: tuple[float, float, float]
+) -> None:
+    for seed in SEEDS:
+        moved = MOTIONS[name].apply(rig, seed)
+        np.testing.assert_allclose(
+            moved.centre_right_in_left, rig.baseline_m * np.array(direction), atol=1e-12
+        )
+        assert angle_deg(moved.R_right_left) < 0.9
+
+
+@pytest.mark.parametrize("angle", [30, 60, 90])
+def test_cameras_apart_look_so_far_apart_and_outwards(rig: Rig, angle: int) -> None:
+    for seed in SEEDS:
+        moved = MOTIONS[f"apart-{angle}"].apply(rig, seed)
+        x, y, z = moved.R_right_left.T @ [0, 0, 1]  # the right axis in the left frame
+        assert np.degrees(np.arctan2(x, z)) == pytest.approx(angle, abs=0.8)
+        assert abs(y) < 0.02
+        np.testing.assert_allclose(moved.centre_right_in_left, [rig.baseline_m, 0, 0], atol=1e-12)
+
+
+@pytest.mark.parametrize("name", [name for name in MOTIONS if name != "as-calibrated"])
 def test_the_seed_alone_decides(rig: Rig, name: str) -> None:
     motion = MOTIONS[name]
     assert motion.apply(rig, 5) == motion.apply(rig, 5)

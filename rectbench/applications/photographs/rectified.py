@@ -17,10 +17,12 @@ from rectbench.errors import InvalidInput, PoseNotFound
 from rectbench.matching.boards.corners import board_matches
 from rectbench.matching.pose.consistent import consistent_matches
 from rectbench.metrics import RowError, row_error
+from rectbench.metrics.coverage import TRIMMED, trimmed_text
 from rectbench.pairs.finding.names import FilePair, LeftOut
 from rectbench.rigs import Rig
 from rectbench.types import Images, Matches
 from rectbench.warps import Rectification
+from rectbench.warps.frame import signed_baseline_m
 
 ELSEWHERE_PX = 5.0
 """Rows farther off than this, source pixels, are no matter of a calibration's accuracy."""
@@ -113,6 +115,19 @@ class RectifiedImages:
         return rows
 
     @property
+    def remarks(self) -> tuple[str, ...]:
+        """What was trimmed of the view, and that disparities are negative, where either is so."""
+        rig, trimmed = self.rectification.rig, self.costs.get(TRIMMED)
+        told = []
+        if trimmed and rig.margin_deg is not None:
+            told.append(trimmed_text(trimmed, rig.margin_deg))
+        if signed_baseline_m(rig) < 0:
+            told.append(
+                "disparities are negative: by the calibration the right camera stands to the other's left"
+            )
+        return tuple(told)
+
+    @property
     def warning(self) -> str:
         """That images and calibration do not belong together, where the rows say so; else nothing."""
         known = [self.rows.get(f"row_error_{kind}_source_median_px") for kind in ("board", "features")]
@@ -133,7 +148,7 @@ def summary_files(made: RectifiedImages) -> Files:
     if made.choice:
         metrics["choice"] = {"why": made.choice.why, "methods": made.choice.table.to_dict("records")}
     metrics |= {"rows": made.rows, "pairs": [result.columns for result in made.pairs]}
-    metrics["left_out"] = list(made.left_out)
+    metrics |= {"left_out": list(made.left_out), "remarks": list(made.remarks)}
     files = {"metrics.json": (json.dumps(_finite(metrics), indent=1, ensure_ascii=False) + "\n").encode()}
     if len(made.pairs) > 1:
         files["pairs.csv"] = pd.DataFrame([r.columns for r in made.pairs]).to_csv(index=False).encode()

@@ -58,8 +58,8 @@ def show_rectified(made: RectifiedImages) -> None:
             median, p95, count = (made.rows[f"row_error_{kind}_{name}"] for name in names)
             table.add_row(words, f"{median:.2f} px in the median, {p95:.2f} px at 95 %, of {count:.0f}")
     screen.print(table)
-    if told := trimmed_text(made.costs, made.rectification.rig.margin_deg):
-        screen.print(Text(told), soft_wrap=True)
+    for remark in made.remarks:
+        screen.print(Text(remark), soft_wrap=True)
     for reason in made.left_out:
         screen.print(Text(f"left out: {reason}", style="yellow"), soft_wrap=True)
     for result in made.pairs:
@@ -69,13 +69,6 @@ def show_rectified(made: RectifiedImages) -> None:
         screen.print(Text(f"warning: {made.warning}", style="yellow"), soft_wrap=True)
     for file in made.files if len(made.pairs) == 1 else made.files[-1:]:
         print(file)
-
-
-def trimmed_text(costs: Mapping[str, float], margin_deg: float | None) -> str:
-    """How much of the view was trimmed, and where, in one line; nothing where nothing was."""
-    if not costs.get("trimmed") or margin_deg is None:
-        return ""
-    return f"trimmed: {costs['trimmed']:.1%} of the source pixels, within {margin_deg:g}° of the epipoles"
 
 
 def _show_choice(screen: Console, choice: Choice) -> None:

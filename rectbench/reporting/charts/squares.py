@@ -114,17 +114,21 @@ def _unit_outline() -> FloatArray:
 
 def _mapped(sources: Sources, result: Result, squares: FloatArray) -> Cells:
     rect = sources.rectification(result)
-    return mapped_cells(rect.left, squares, rect.size)
+    return mapped_cells(rect.left, squares, rect.size, rect.turn_px)
 
 
-def mapped_cells(warp: Warp, squares: FloatArray, size: tuple[int, int]) -> Cells:
-    """The squares that land on the output, whole or in part."""
+def mapped_cells(
+    warp: Warp, squares: FloatArray, size: tuple[int, int], turn_px: float | None = None
+) -> Cells:
+    """The squares that land on the output, whole or in part; but for those that a seam of its rows cuts."""
     outlines = warp.forward(squares)
     areas = np.abs(np.linalg.det(warp.jacobian(squares.mean(axis=1))))
     frame = np.array(size) - 0.5
     lands = np.isfinite(outlines).all(axis=(1, 2)) & np.isfinite(areas)
     within = np.all((outlines > -0.5) & (outlines < frame), axis=2)
     lands &= within.any(axis=1)
+    if turn_px is not None:
+        lands &= np.ptp(outlines[..., 1], axis=1) < turn_px / 2
     return Cells(outlines[lands], areas[lands], size)
 
 

@@ -21,6 +21,7 @@ from rectbench.reporting.tables.tabulation import (
     method_rows,
     summaries_of,
     titled,
+    view_text,
 )
 from rectbench.runs.run import Run
 
@@ -71,7 +72,7 @@ def _main_table(run: Run, pose: str) -> Table:
         first += filter(None, [_interval_field(found, ranking)])
     placed = [*first, *fields.values()]
     scene = "scene" if run.has_truth else "photographed pair"
-    told = [found.design, found.order, averages_text(results, columns, scene)]
+    told = [found.design, found.order, averages_text(results, columns, scene), view_text(run, results)]
     notes = [behind_text(found, run.catalogue), found.caveat, f"{PARTIAL}." if failing else ""]
     return Table(
         kind="main",

@@ -39,6 +39,7 @@ from rectbench.reporting.tables.tabulation import (
     methods_table,
     titled,
     topic_columns,
+    view_text,
 )
 from rectbench.runs.run import Run
 from rectbench.types import FloatArray
@@ -145,7 +146,16 @@ def pairwise_tables(run: Run, topic: str) -> Iterator[Table]:
             kind=wording.kind,
             name=named(run, wording.stem, "" if run.has_truth else pose),
             title=titled(run, wording.title + ("" if run.has_truth else f" under the {pose} pose")),
-            caption=" ".join([capitalised(caption.format(pose=pose)), averages_text(results, columns)]),
+            caption=" ".join(
+                filter(
+                    None,
+                    [
+                        capitalised(caption.format(pose=pose)),
+                        averages_text(results, columns),
+                        view_text(run, results) if topic == "Coverage" else "",
+                    ],
+                )
+            ),
         )
 
 

@@ -6,11 +6,13 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
+from rectbench.margin import MARGIN_DEG
+from rectbench.metrics.coverage import TRIMMED, trimmed_text
 from rectbench.plugins.metric import Column
 from rectbench.plugins.result import Result
 from rectbench.reporting.asked import part_title
 from rectbench.reporting.shares import reads
-from rectbench.reporting.tables.captions import counted
+from rectbench.reporting.tables.captions import capitalised, counted
 from rectbench.reporting.tables.numbers import MISSING, shown_roughly
 from rectbench.reporting.tables.summaries import Averaged, Summary, is_too_wide, summarise
 from rectbench.reporting.tables.table import Entry, Heading, Section, Table, number, text_heading, with_best
@@ -143,3 +145,16 @@ def _beside(averaged: Averaged, is_partial: bool) -> dict[str, float]:
     told = {} if found is None else {"low": found.low, "high": found.high}
     told = {end: value for end, value in told.items() if math.isfinite(value)}
     return {**told, **({"count": float(averaged.count)} if is_partial else {})}
+
+
+def view_text(run: Run, results: Iterable[Result]) -> str:
+    """How much of the views was trimmed, and where, in a sentence; nothing where nothing was."""
+    of_rig: dict[str, list[float]] = {}
+    for r in results:
+        if r.ok:
+            of_rig.setdefault(r.rig, []).append(r.metrics.get(TRIMMED, 0.0))
+    shares = [share for found in of_rig.values() if (share := max(found))]
+    if not shares:
+        return ""
+    told = trimmed_text(sum(shares) / len(shares), run.record.spec.margin_deg or MARGIN_DEG)
+    return f"{capitalised(told)}, on {len(shares)} of {counted(len(of_rig), 'rig')}."

@@ -16,6 +16,9 @@ from rectbench.warps.view.sampling import evaluation_pixels
 FARTHEST = math.tan(math.radians(60.0))
 """No farther from the foot of the perpendicular than this, as a multiple of its distance, the image's middle
 lies: it would be stretched beyond use there, and along the baseline there is no plane."""
+OFF_AXIS = math.tan(math.radians(35.0))
+"""While the sources' middles are no farther from that foot, the image shows most about them; beyond, it shows
+more about the middle of what lies in front."""
 TURNS = 180
 """Directions about the baseline, 2° apart, among which the plane's is found."""
 
@@ -39,7 +42,7 @@ class PerspectiveFrame(NamedTuple):
     def of(cls, rig: Rig) -> PerspectiveFrame:
         """That of a rig: looking ahead, with the sources' middles in the middle, where this shows them.
 
-        Where a source's middle lies beside or behind that plane, as where a camera looks along the baseline,
+        Where a source's middle is far off in that plane or behind it, as where a camera looks along the baseline,
         the plane is turned about the baseline to where it shows most of both views. Raises Unsupported
         where no such plane shows both.
         """
@@ -49,7 +52,7 @@ class PerspectiveFrame(NamedTuple):
         rays = np.concatenate(
             [c.unproject(px)[0] @ R.T for c, px, R in zip(cameras, centres, rotations, strict=True)]
         )
-        if (rays[:, 2] > 0).all() and (np.abs(rays[:, 1]) <= FARTHEST * rays[:, 2]).all():
+        if (np.abs(rays[:, :2]) <= OFF_AXIS * rays[:, 2:]).all():
             return cls(*rotations, _middle(rays))
         views = [
             camera.unproject(evaluation_pixels(camera))[0] @ R.T
