@@ -103,12 +103,37 @@ class EpipolarPlanes:
     def rectification(self, along: Literal["length", "logarithm"], rows: rb.Profile) -> rb.Rectification:
         """Columns along the lines, in a frame that just holds both images."""
         first, last = float(rows(rows.low)), float(rows(rows.high))
-        polars = [replace(pencil.polar, along=along, v=rows.framed(first, 1.0)) for pencil in self.pencils]
-        reached = [pencil.columns(polar) for pencil, polar in zip(self.pencils, polars, strict=True)]
+        left, right = (replace(p.polar, along=along, v=rows.framed(first, 1.0)) for p in self.pencils)
+        right = replace(right, start_px=self.apart_px(left, right))
+        reached = [pencil.columns(polar) for pencil, polar in zip(self.pencils, (left, right), strict=True)]
         least, greatest = np.min(reached), np.max(reached)
-        left, right = (replace(polar, start_px=float(-0.5 - least)) for polar in polars)
+        targets: list[rb.Target] = [
+            replace(polar, start_px=polar.start_px - float(least) - 0.5) for polar in (left, right)
+        ]
+        if rows.high - rows.low >= 2 * np.pi:
+            targets = [rb.Wrapped(target, -0.5, last - first) for target in targets]
         size = int(np.ceil(greatest - least)), int(np.ceil(last - first))
-        return rb.Rectification.from_targets(self.rig, left, right, size)
+        return rb.Rectification.from_targets(self.rig, targets[0], targets[1], size)
+
+    def apart_px(self, left: rb.PlanarPolar, right: rb.PlanarPolar) -> float:
+        """How much greater û is in the left image than in the right, of what both see far away: the median.
+
+        Lengths in two images have no common zero. Where they see nothing in common, of their middles.
+        """
+        warps = [
+            replace(pencil.angle_warp, target=polar)
+            for pencil, polar in zip(self.pencils, (left, right), strict=True)
+        ]
+        pixels = rb.evaluation_pixels(self.rig.left)
+        rays = self.rig.left.unproject(pixels)[0] @ self.rig.R_right_left.T
+        both = self.rig.right.sees(rays)
+        if not both.any():
+            ranges = [
+                pencil.columns(polar) for pencil, polar in zip(self.pencils, (left, right), strict=True)
+            ]
+            return float(np.mean(ranges[0]) - np.mean(ranges[1]))
+        columns = warps[1].forward(self.rig.right.project(rays[both])[0])[:, 0]
+        return float(np.nanmedian(warps[0].forward(pixels[both])[:, 0] - columns))
 
 
 def is_ideal(camera: rb.Camera) -> bool:

@@ -84,6 +84,7 @@ from .warps import Resampler as Resampler
 from .warps import Target as Target
 from .warps import ViewAngles as ViewAngles
 from .warps import Warp as Warp
+from .warps import Wrapped as Wrapped
 from .warps import centre_rays as centre_rays
 from .warps import centre_resolution_px as centre_resolution_px
 from .warps import evaluation_pixels as evaluation_pixels

@@ -20,6 +20,7 @@ from rectbench.warps.targets import Epipolar as Epipolar
 from rectbench.warps.targets import Framed as Framed
 from rectbench.warps.targets import Perspective as Perspective
 from rectbench.warps.targets import Target as Target
+from rectbench.warps.targets import Wrapped as Wrapped
 from rectbench.warps.view.extent import ViewAngles as ViewAngles
 from rectbench.warps.view.extent import centre_rays as centre_rays
 from rectbench.warps.view.extent import perspective_size as perspective_size

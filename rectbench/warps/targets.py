@@ -187,6 +187,13 @@ class Wrapped(Target):
     """A target whose rows go all around the baseline: beyond the last one the first ones come again.
 
     A ray has one place, in rows `start` to `start + turn`; pixels beyond those show once more what is there.
+
+    >>> import rectbench as rb
+    >>> rows = rb.Radial("equidistant", 100.0, 0.0)
+    >>> target = rb.Wrapped(rb.Epipolar(rows, rows), -314.0, 628.0)
+    >>> target.unproject([[0.0, -10.0], [0.0, 618.0]])[0].round(3)
+    array([[ 0.  , -0.1 ,  0.995],
+           [ 0.  , -0.1 ,  0.995]])
     """
 
     target: Target

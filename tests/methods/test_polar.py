@@ -87,7 +87,6 @@ def steps_of_the_paper(pair: rb.Rig, direction: np.ndarray, turns: int, sense: i
 def test_rows_are_the_lines_that_the_papers_steps_find(motion: str) -> None:
     pair = pinholes(MOTIONS[motion])
     rect = rb.rectify(pair, "polar")
-    assert isinstance(rect.left.target, rb.PlanarPolar)
     to_right = pair.left.project(pair.centre_right_in_left)[0]
     start = np.array([40.0, 200.0]) - to_right
     start /= np.linalg.norm(start)
@@ -149,7 +148,7 @@ def test_a_circle_about_the_epipole_has_the_closed_form() -> None:
     params = {"fx": middle / angle, "fy": middle / angle, "cx": middle, "cy": middle}
     lens = rb.Camera("equidistant", (401, 401), params, max_angle_deg=70)
     rect = rb.rectify(rb.Rig(lens, lens, np.eye(3), np.array([0.0, 0, -0.3])), "polar")
-    u, v = rect.left.target.u, rect.left.target.v
+    u, v = rect.left.target.target.u, rect.left.target.target.v
     gamma, beta = np.radians(np.linspace(25, 80, 12)), np.linspace(-3.0, 3.0, 40)
     np.testing.assert_allclose((u(gamma + 1e-4) - u(gamma - 1e-4)) / 2e-4, middle / angle, rtol=0.01)
     slopes = (v(beta + 1e-4) - v(beta - 1e-4)) / 2e-4
@@ -182,7 +181,7 @@ def test_planes_are_for_pinholes_without_distortion() -> None:
 def test_rows_go_all_around_an_epipole_in_the_view() -> None:
     rect = rb.rectify(pinholes(MOTIONS["forward"]), "polar")
     assert rect.turn_px == pytest.approx(rect.size[1], abs=1)
-    assert rect.left.target.v == rect.right.target.v
+    assert rect.left.target.target.v == rect.right.target.target.v
 
 
 @pytest.mark.parametrize("method", ["polar", "log-polar", "polar-optimal"])
@@ -194,3 +193,18 @@ def test_all_of_the_trimmed_view_is_shown_by_maps_that_agree(method: str, motion
         delivered = rb.Delivered.of(rect, rb.ScoredView.of(trimmed))
         check_agreement(rect, delivered)
         assert delivered.keeps(1.0)
+
+
+@pytest.mark.parametrize("method", ["polar", "log-polar"])
+@pytest.mark.parametrize("name", ["pinhole-toed-in", "pinhole-rolled", "pinhole-unequal"])
+def test_what_is_far_away_has_about_the_same_columns_in_planes_too(method: str, name: str) -> None:
+    # The epipoles of cameras that are turned towards each other lie on opposite sides of their images.
+    pair = rb.load_rig(name)
+    rect = rb.rectify(pair, method, form="planar")
+    far = 1e4 * pair.left.unproject(rb.evaluation_pixels(pair.left))[0]
+    px_right, seen = pair.right.project(pair.right_from_left(far))
+    both = seen & pair.right.contains(px_right)
+    apart = rect.left.forward(rb.evaluation_pixels(pair.left)[both]) - rect.right.forward(px_right[both])
+    assert abs(np.median(apart[:, 0])) < 1
+    assert rect.size[0] < 1.6 * pair.left.width
+    assert (rect.valid("left") & rect.valid("right")).mean() > 0.3
