@@ -13,7 +13,7 @@ import numpy as np
 from rectbench.calibrations.choosing import Pair as Pair
 from rectbench.calibrations.choosing import chosen as chosen
 from rectbench.calibrations.contract import UNITS, Given, PosedCamera
-from rectbench.calibrations.documents import Section, Source, errors_at
+from rectbench.calibrations.documents import Section, Source, errors_at, tell
 from rectbench.calibrations.rectified_pair import in_one_frame
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput, argument
@@ -22,6 +22,9 @@ from rectbench.types import FloatArray
 
 LONGEST_BASELINE_M = 10.0
 """A longer baseline is rather one in millimetres; it is believed where the unit is stated."""
+
+LONG_BASELINE_M = 1.0
+"""One that is told, as few rigs have it; those of vehicles do."""
 
 POSE_FILE = (
     "a third file with the pose, `R_right_left: [[...], ...]` and `t_right_left: [x, y, z]`, or "
@@ -57,6 +60,9 @@ def assembled(
             f"{where}: the baseline is {rig.baseline_m:.6g} m; expected at most {LONGEST_BASELINE_M:g} m, "
             f"or {argument('unit', 'mm')} (or cm, in, ft, m) stating what the file's translations are in"
         )
+    if stated is None and rig.baseline_m > LONG_BASELINE_M:
+        length = f"{rig.baseline_m:.4g} m"
+        tell(f"{where}: the baseline is taken to be {length}; `{argument('unit')}` says otherwise")
     return rig
 
 

@@ -13,7 +13,7 @@ import numpy as np
 from rectbench.calibrations.contract import Given
 from rectbench.calibrations.documents import shown
 from rectbench.cameras import Camera
-from rectbench.errors import InvalidInput
+from rectbench.errors import InvalidInput, argument
 from rectbench.rigs.rig import Rig
 from rectbench.types import FloatArray
 
@@ -58,7 +58,7 @@ def chosen(
         pairs = list(_pairs(names, rig_of)) if rig_of else []
         known = ", ".join(shown(name) for name in names[:MAX_NAMES])
         found = f"{file}: holds {len(names)} cameras"
-        expected = "`cameras=` (--cameras LEFT,RIGHT) with two of them"
+        expected = f"`{argument('cameras')}` with two of them"
         raise CamerasNotChosen(f"{found}; expected {expected}: {'; '.join(pairs) or known}", names)
     return given.cameras or (names[0], names[1])
 

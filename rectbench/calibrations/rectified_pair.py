@@ -62,9 +62,9 @@ def in_one_frame(left: PosedCamera, right: PosedCamera) -> tuple[PosedCamera, Po
         return left, right  # two lenses of one focal length, which is P's as well
     focal = _stereo_rectify(left, right, shift, balance)[0]
     tell(
-        f"{left.where} and {right.where}: the projection matrices have each camera's own "
-        f"{'K R' if turned else 'focal length'} in them, as ROS' calibrator of fisheyes writes them; the "
-        f"baseline follows from cv2.fisheye.stereoRectify's focal length {focal:.6g} (balance {balance:.2g})"
+        f"{left.where} and {right.where}: P has each camera's own {'K R' if turned else 'focal length'}, as "
+        "ROS' fisheye calibrator writes it; the baseline is taken from cv2.fisheye.stereoRectify's focal "
+        f"length, {focal:.6g} px (balance {balance:.2g})"
     )
     return _placed(left, T1, P1[0, 3] / focal), _placed(right, T2, P2[0, 3] / focal)
 

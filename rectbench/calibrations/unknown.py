@@ -20,6 +20,9 @@ MAX_KEYS = 8
 LONGEST_NEED = 160
 """Characters of what a format would need."""
 
+NO_CAMERA = "holds 0 cameras"
+"""What a format needs that has found none: it is not near, whatever mappings it has looked into for one."""
+
 NEAREST = 2
 LISTED = "all formats, and how a rig of one's own is written: rectbench list formats"
 
@@ -57,7 +60,7 @@ def _tried(
             source.forget()
         need = _need(format, sources, given)
         found = sum(_found(source.document.values) for source in sources)
-        if found and need:
+        if found and need and not need.startswith(NO_CAMERA):
             tried.append((-found, format.name, need))
     return tried
 

@@ -24,8 +24,10 @@ from rectbench.calibrations.vocabulary import (
     LENS,
     LENS_WORDS,
     LETTERS,
+    NAMED_COEFFICIENT,
     OTHERS,
     POSE,
+    SEPARATOR,
     SHORT,
     TYPES,
     WORD,
@@ -174,13 +176,18 @@ def _names_lens_or_pose(key: str, value: Any, words: frozenset[str]) -> bool:
         return finite_number(value) is not None
     if (LENS | POSE).intersection(words) or any(letter in LETTERS for letter in WORD.findall(key)):
         return True
-    return bool(SHORT.fullmatch(bare(key)))
+    return bool(SHORT.fullmatch(bare(key))) or _has_coefficient(key)
+
+
+def _has_coefficient(key: str) -> bool:
+    """Whether a key has a coefficient's name among others, as `lens_k1` has."""
+    return any(NAMED_COEFFICIENT.fullmatch(part) for part in SEPARATOR.split(key))
 
 
 def _is_distortion(key: str, value: Any, words: frozenset[str]) -> bool:
     """Whether a key is one of coefficients: not zero, and no word."""
     is_number = finite_number(value) is not None or isinstance(value, dict | list)
-    is_coefficient = COEFFICIENT.fullmatch(bare(key)) or "D" in WORD.findall(key)
+    is_coefficient = COEFFICIENT.fullmatch(bare(key)) or "D" in WORD.findall(key) or _has_coefficient(key)
     return is_number and bool(DISTORTION.intersection(words) or is_coefficient)
 
 
@@ -239,4 +246,4 @@ def _has_what_was_read(value: Any, sibling: Any) -> bool:
         )
     if isinstance(value, list) and isinstance(sibling, list) and _asked(sibling):
         return len(value) >= len(sibling) and all(map(_has_what_was_read, value, sibling))
-    return not isinstance(sibling, Entries)
+    return not isinstance(sibling, Entries) and not _asked(sibling)

@@ -15,13 +15,14 @@ LENS = DISTORTION | frozenset(
     (
         *("intrinsic", "intrinsics", "model", "lens", "focal", "skew", "principal", "projection", "mirror"),
         *("affine", "stretch", "fx", "fy", "cx", "cy", "xi", "tau", "omega", "mtx", "equidistant"),
-        *("fov", "hfov", "vfov", "dfov"),
+        *("fov", "hfov", "vfov", "dfov", "angle", "aspect", "ratio", "aperture", "cde", "ppx", "ppy"),
     )
 )
 POSE = frozenset(
     (
         *("rotation", "rot", "translation", "trans", "rvec", "tvec", "rodrigues", "quaternion", "extrinsic"),
         *("extrinsics", "pose", "baseline", "rectification", "rectify", "transform", "transformation"),
+        *("correction", "roll", "pitch", "yaw", "rpy", "euler", "quat"),
     )
 )
 LEAST_LETTERS = 6
@@ -33,6 +34,12 @@ SHORT = re.compile(r"[kdrtpmf]|k[1-6]|[pt][12]|s[1-4]")
 
 COEFFICIENT = re.compile(r"k[1-6]|[pt][12]|s[1-4]|[dD]")
 """The same of a distortion alone."""
+
+NAMED_COEFFICIENT = re.compile(r"k[1-6]|p[12]")
+"""Part of a key that is a coefficient's name, whatever else stands beside it."""
+
+SEPARATOR = re.compile(r"[_\W]+")
+"""Between the parts of a key."""
 
 TYPES = frozenset(("type", "kind"))
 """Words whose value tells: a number, or a word on a lens."""
@@ -81,5 +88,5 @@ def words_of(key: str) -> frozenset[str]:
 def bare(key: str) -> str:
     """A key without its camera's side or number."""
     last = key.rpartition(".")[2]
-    words = [word for word in re.split(r"[_\W]+", last) if word.lower() not in SIDES]
+    words = [word for word in SEPARATOR.split(last) if word.lower() not in SIDES]
     return words[0] if len(words) == 1 else last

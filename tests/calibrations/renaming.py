@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import copy
+import io
 import json
 import re
 from collections.abc import Iterator
 from typing import Any
+
+import numpy as np
 
 from rectbench.calibrations.documents.parsing import Malformed, parse
 
@@ -23,6 +26,15 @@ RENAMED = {
 
 LINE_KEY = re.compile(r"(?m)^[ \t]*['\"]?([A-Za-z_][\w ]*?)['\"]?[ \t]*(?:[:=]|$)")
 """A key, or a label alone in its line, in a text that is no document: INI, tables, Python's dictionaries."""
+
+
+def changes(content: str | bytes) -> Iterator[tuple[str, bytes]]:
+    """What was done to a key of a file, and the file after it; of bytes, an archive of NumPy's."""
+    if isinstance(content, bytes):
+        yield from changed_archives(content)
+        return
+    changed = changed_texts(content) if content_of(content) is None else changed_documents(content)
+    yield from ((what, text.encode()) for what, text in changed)
 
 
 def content_of(text: str) -> Any:
@@ -63,6 +75,18 @@ def changed_texts(text: str) -> Iterator[tuple[str, str]]:
         for how, rename in RENAMED.items():
             start, end = found.span(1)
             yield f"{how} {found[1]} at {start}", text[:start] + rename(found[1]) + text[end:]
+
+
+def changed_archives(content: bytes) -> Iterator[tuple[str, bytes]]:
+    """The same of an archive, whose arrays are renamed, or moved into a folder of it."""
+    with np.load(io.BytesIO(content)) as archive:
+        arrays = dict(archive)
+    inwards = {"moved inwards": "moved/{}".format}
+    for name in arrays:
+        for how, rename in (RENAMED | inwards).items():
+            stream = io.BytesIO()
+            np.savez(stream, **{rename(key) if key == name else key: arrays[key] for key in arrays})
+            yield f"{how} {name}", stream.getvalue()
 
 
 def with_key(content: Any, path: Path, name: str, inwards: bool = False, to_top: bool = False) -> Any:

@@ -21,7 +21,7 @@ TOLD = {
     "opencv-samples": "taken for a pinhole's k1 k2 p1 p2",
     "opencv-left-right": "taken for a pinhole's k1 k2 p1 p2",
     "ros-fisheye-today": "K R in them, as ROS' calibrator of fisheyes writes them",
-    "ros-fisheye-own-focal": "own focal length in them",
+    "ros-fisheye-own-focal": "P has each camera's own focal length",
     "kitti-rectified": "holds 3 cameras; 0 and 1 are taken, others by `cameras=`",
 }
 """Of which examples something is assumed, and what."""

@@ -90,7 +90,8 @@ def realsense_d400() -> Example:
     text += ' Intrinsic of "Depth" / 848x800 / {Z16}\nIntrinsic NOT available!\n\n\nExtrinsic Parameters:\n'
     text += realsense_extrinsic("Infrared 1", "Color", T_BODY_LEFT)
     text += realsense_extrinsic("Infrared 1", "Infrared 2", T_RL)
-    return Example({"d435.txt": text}, PINHOLES, options={"size": SIZE})
+    asked = {"size": SIZE, "cameras": ["Infrared 1", "Infrared 2"]}
+    return Example({"d435.txt": text}, PINHOLES, options=asked)
 
 
 def rs2_stream(focal: list[float], model: str, numbers: list[float]) -> dict[str, Any]:
@@ -158,7 +159,8 @@ def aria() -> Example:
         )
         for f, cx, cy, *rest in (ARIA1, ARIA2)
     )
-    return Example({"calib.json": json.dumps(content)}, rig(left, right), options={"size": SIZE})
+    asked = {"size": SIZE, "cameras": ["camera-slam-left", "camera-slam-right"]}
+    return Example({"calib.json": json.dumps(content)}, rig(left, right), options=asked)
 
 
 def facebook360() -> Example:

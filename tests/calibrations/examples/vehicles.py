@@ -258,9 +258,9 @@ def argoverse_one() -> Example:
     }
     size = (2464, 2056)
     cameras = (plain(FOCAL1, size), plain(FOCAL2, size))
-    return Example(
-        {"vehicle_calibration_info.json": json.dumps(content)}, Rig(*cameras, R_RIGHT_LEFT, T_RIGHT_LEFT)
-    )
+    files = {"vehicle_calibration_info.json": json.dumps(content)}
+    asked = {"cameras": ["stereo_front_left", "stereo_front_right"]}
+    return Example(files, Rig(*cameras, R_RIGHT_LEFT, T_RIGHT_LEFT), options=asked)
 
 
 def argoverse_two() -> Example:

@@ -21,6 +21,7 @@ from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents import Section, Source, errors_at, tell
 from rectbench.calibrations.formats.toolboxes.opencv import camera_matrix, opencv_camera
 from rectbench.cameras import Camera
+from rectbench.errors import argument
 from rectbench.rigs.rig import Rig
 
 
@@ -32,7 +33,7 @@ def _read(sources: Sequence[Source], given: Given) -> Rig:
     found = [key for key in file.values if re.fullmatch(r"K_0\d|P\d", key)]
     if given.cameras is None and len(found) > 2:
         tell(
-            f"{source.path}: holds {len(found)} cameras; 0 and 1 are taken, others by `cameras=` (--cameras)"
+            f"{source.path}: holds {len(found)} cameras; 0 and 1 are taken, others by `{argument('cameras')}`"
         )
     if "P0" in file:
         names = given.cameras or ("P0", "P1")

@@ -4,8 +4,9 @@
 same without s0 ... s3, and those of KannalaBrandtK3 fx fy cx cy k0 ... k3. `T_Device_Camera` takes points of
 the camera to the device: `Translation` in metres, `UnitQuaternion` [w, [x, y, z]] (projectaria_tools, camera
 models and SensorCalibrationJson.cpp). Pixel (0, 0) is the centre of a pixel. The image size is that of
-`ConfigData` or of `ImageSizes`, and else to be given: the cameras run at several sizes. Left and right are
-camera-slam-left and camera-slam-right, or the cameras asked for by their labels.
+`ConfigData` or of `ImageSizes`, and else to be given: the cameras run at several sizes. Cameras go by
+their labels; of more than two it is asked which are left and right, such as camera-slam-left and
+camera-slam-right.
 """
 
 from __future__ import annotations

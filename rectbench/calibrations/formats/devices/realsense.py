@@ -13,8 +13,9 @@ rsutil.h). Pixel (0, 0) is the centre of a pixel.
 | Ftheta | field-of-view |
 
 Inverse Brown Conrady with coefficients, which leads from the image to the ideal plane, is refused, as are
-the tangential terms of the modified one. Left and right are Fisheye 1 and 2, or Infrared 1 and 2, or the
-streams asked for by their names. A stream of several sizes wants the one given beside the file.
+the tangential terms of the modified one. Left and right are the two streams, Fisheye 1 before 2
+and Infrared 1 before 2; of more than two it is asked which. A stream of several sizes wants the one given
+beside the file.
 """
 
 from __future__ import annotations
@@ -24,12 +25,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from rectbench.calibrations.assembling import assembled, chosen, inverse, rigid, single
+from rectbench.calibrations.assembling import Pair, assembled, chosen, inverse, rigid, single
 from rectbench.calibrations.contract import Given, RigFormat
 from rectbench.calibrations.documents import Section, Source, errors_at, finite_number, shown
 from rectbench.calibrations.formats.devices.realsense_lens import pair_first, realsense_camera
 from rectbench.cameras import Camera
-from rectbench.errors import InvalidInput
+from rectbench.errors import InvalidInput, argument
 from rectbench.rigs.rig import Rig, checked_rotation
 from rectbench.types import FloatArray
 
@@ -48,11 +49,13 @@ SIZE = ("Width", "Height")
 def _read(sources: Sequence[Source], given: Given) -> Rig:
     source = single(sources)
     streams = _streams(source)
-    left_name, right_name = chosen(pair_first(list(streams)), given, source.path)
-    left, right = (_camera(streams[name], name, given) for name in (left_name, right_name))
-    T = _pose(source, left_name, right_name)
-    where = f'{source.path}: Extrinsic from "{left_name}" to "{right_name}"'
-    return assembled(left, right, T, given, where, source.name, unit="m")
+
+    def rig_of(names: Pair) -> Rig:
+        left, right = (_camera(streams[name], name, given) for name in names)
+        where = f'{source.path}: Extrinsic from "{names[0]}" to "{names[1]}"'
+        return assembled(left, right, _pose(source, *names), given, where, source.name, unit="m")
+
+    return rig_of(chosen(pair_first(list(streams)), given, source.path, rig_of))
 
 
 def _streams(source: Source) -> dict[str, list[Section]]:
@@ -92,7 +95,7 @@ def _camera(blocks: list[Section], name: str, given: Given) -> Camera:
         file = blocks[0].file
         raise InvalidInput(
             f'{file}: "{name}" has {len(fitting)} intrinsics'
-            f"{' of that size' if given.size else ''}; expected `size=` one of {sizes}"
+            f"{' of that size' if given.size else ''}; expected `{argument('size')}` one of {sizes}"
         )
     section = fitting[0]
     return realsense_camera(section, FIELDS, _size(section))

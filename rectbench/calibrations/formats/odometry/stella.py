@@ -24,8 +24,8 @@ MODELS = {"perspective": "pinhole", "fisheye": "fisheye"}
 
 def _read(sources: Sequence[Source], given: Given) -> Rig:
     file = single(sources).document
+    file.knows("Tracking", "Mapping", "Initializer", "LoopDetector", "Relocalizer")  # of the program
     rectified = file.section("Camera", "the rectified camera")
-    file.knows("Tracking", "Mapping")
     size = rectified.sides("cols", "rows", given.size)
     focal = rectified.number("fx", "pixels")
     shift = rectified.number("focal_x_baseline", "pixels times metres")

@@ -19,8 +19,8 @@ the versions:
 | fisheye or fisheye4, fisheye1 | kannala-brandt, field-of-view |
 
 Equidistant cameras, whose radius AliceVision's versions take differently, panoramas and 3DEqualizer's
-undistortions are refused. The views' images are the cameras' names; the first two with poses are left and
-right, unless others are asked for.
+undistortions are refused. The views' images are the cameras' names; of more than two with poses it is asked
+which are left and right.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ import numpy as np
 
 from rectbench.calibrations.assembling import camera_of, inverse, rigid, single
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
-from rectbench.calibrations.documents import Section, Source, errors_at
+from rectbench.calibrations.documents import Section, Source, errors_at, tell
 from rectbench.calibrations.named_cameras import by_name, refuse_unread, rig_of_named, told_scale
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
@@ -67,7 +67,10 @@ INTRINSIC_KEYS = (
     *("distortionInitializationMode", "distortionParams", "distortionLocked", "distortionType"),
     *("undistortionOffset", "undistortionParams", "undistortionType"),
 )
-VIEW_KEYS = ("viewId", "poseId", "rigId", "subPoseId", "intrinsicId", "isPoseIndependant", "frameId")
+INDEPENDENT = "isPoseIndependant"
+"""Whether a view of a rig has a pose of its own; AliceVision's default is that it has."""
+
+VIEW_KEYS = ("viewId", "poseId", "rigId", "subPoseId", "intrinsicId", INDEPENDENT, "frameId")
 """Those of every version's intrinsics and views that say anything of a lens or a pose."""
 
 Version = tuple[float, ...]
@@ -120,8 +123,9 @@ def _views(file: Section) -> list[tuple[str, _View]]:
         if pose is None:
             continue
         T = _transform(pose.section("pose", "a pose").section("transform", "rotation and center"))
-        is_of_rig = "rigId" in view and str(view.values.get("isPoseIndependant", "true")).lower() in "false0"
-        if is_of_rig:
+        if "rigId" in view and INDEPENDENT not in view:
+            tell(f"{file.file}: {INDEPENDENT} of a rig's view is missing; taken to be true, its pose its own")
+        if "rigId" in view and str(view.values.get(INDEPENDENT, "true")).lower() in ("false", "0"):
             T = _sub_pose(view, rigs) @ T
         elif "subPoseId" in view and "rigId" not in view:
             raise view.fault("rigId", "the rig of its subPoseId")
@@ -149,7 +153,9 @@ def _transform(section: Section) -> FloatArray:
 def _camera(section: Section, version: Version, given: Given) -> Camera:
     refuse_unread(section, INTRINSIC_KEYS)
     kind = section.choice("type", TYPES)
-    distortion = section.choice("distortionType", DISTORTIONS, TYPES[kind])
+    section.knows("*nitial*", "*Locked")  # what a solver started from, and may not move
+    stated = "distortionType" in section
+    distortion = section.choice("distortionType", DISTORTIONS) if stated else TYPES[kind]
     if distortion != TYPES[kind] and kind != "pinhole":
         raise section.fault("distortionType", f"{TYPES[kind]}, as the type {kind} has it")
     if section.values.get("undistortionType", "none") != "none" or section.values.get("undistortionParams"):
@@ -182,14 +188,22 @@ def _focal(section: Section, version: Version, size: tuple[int, int]) -> tuple[f
     if version < (1, 2, 2):
         both = section.array("pxFocalLength", "one or two numbers of pixels", (1, 2)).tolist()
         return both[0], both[-1]
-    sensor = section.number("sensorWidth", "mm") if "sensorWidth" in section else 36.0
+    sensor = _told(section, "sensorWidth", "mm", 36.0)
     if not sensor > 0:
         raise section.fault("sensorWidth", "mm above 0")
     fx = section.number("focalLength", "mm") / sensor * size[0]
-    ratio = section.number("pixelRatio", "a number above 0") if "pixelRatio" in section else 1.0
+    ratio = _told(section, "pixelRatio", "a number above 0", 1.0)
     if not ratio > 0:
         raise section.fault("pixelRatio", "a number above 0")
     return fx, fx * ratio if version >= (1, 2, 5) else fx / ratio
+
+
+def _told(section: Section, key: str, expected: str, default: float) -> float:
+    """The number under `key`, or AliceVision's own default, which is told."""
+    if key in section:
+        return section.number(key, expected)
+    tell(f"{section.at(key)} is missing; taken to be {default:g}")
+    return default
 
 
 FORMAT = RigFormat(

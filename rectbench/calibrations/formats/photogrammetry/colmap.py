@@ -47,7 +47,7 @@ from rectbench.calibrations.formats.photogrammetry.colmap_files import (
 )
 from rectbench.calibrations.layouts import layout_of
 from rectbench.cameras import Camera
-from rectbench.errors import InvalidInput, UnknownName
+from rectbench.errors import InvalidInput, UnknownName, argument
 from rectbench.rigs.file_formats import Writing
 from rectbench.rigs.rig import Rig
 from rectbench.types import FloatArray
@@ -158,7 +158,7 @@ def _pair(cameras_file: Path) -> tuple[_PlacedCamera, _PlacedCamera]:
 
 def _tell_more(file: Path, count: int, what: str) -> None:
     if count > 2:
-        tell(f"{file}: the first two {what} are taken; others by `cameras=` (--cameras LEFT,RIGHT)")
+        tell(f"{file}: the first two {what} are taken; others by `{argument('cameras')}`")
 
 
 def _images_named(cameras_file: Path, names: Sequence[str]) -> tuple[_PlacedCamera, _PlacedCamera]:

@@ -14,8 +14,8 @@ which are the p2, p1 of OpenCV.
 | equisolid_fisheye without terms | equisolid |
 
 The frame's k4, p3 and p4 have no place here. Of a multi-camera system only cameras with a transform of
-their own are read. Cameras go by their labels; the first two that are aligned are left and right, unless
-others are asked for.
+their own are read. Cameras go by their labels; of more than two that are aligned it is asked which are left
+and right.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from rectbench.calibrations.documents.elements import parse_elements
 from rectbench.calibrations.documents.parsing import Malformed
 from rectbench.calibrations.named_cameras import by_name, rig_of_named, told_scale
 from rectbench.cameras import Camera
-from rectbench.errors import InvalidInput
+from rectbench.errors import InvalidInput, argument
 from rectbench.rigs.rig import Rig
 
 PARAMETERS = ("f", "cx", "cy", "b1", "b2", "k1", "k2", "k3", "k4", "p1", "p2", "p3", "p4")
@@ -81,7 +81,7 @@ def _check_slaves(chunk: _Chunk, given: Given) -> None:
         if given.cameras is None or name in given.cameras:
             raise InvalidInput(
                 f"{chunk.file}: camera {shown(name)} is a slave of a multi-camera system and has no "
-                "transform of its own; expected `cameras=` two that have one"
+                f"transform of its own; expected `{argument('cameras')}` two that have one"
             )
 
 

@@ -10,8 +10,8 @@ later the number alone. Pixel (0, 0) is the centre of a pixel, as the images are
 | pinhole, pinhole_radial_k1, pinhole_radial_k3, pinhole_brown_t2 (k1 k2 k3 t1 t2) | pinhole |
 | fisheye | kannala-brandt |
 
-Spherical images are refused. The views' images are the cameras' names; the first two that have poses are
-left and right, unless others are asked for.
+Spherical images are refused. The views' images are the cameras' names; of more than two with poses it is
+asked which are left and right.
 """
 
 from __future__ import annotations
@@ -100,10 +100,14 @@ def _class_names(file: Section) -> dict[float, str]:
     return names
 
 
+def _object(entry: Section) -> Section:
+    wrapper = entry.section("value", "an object").section("ptr_wrapper", "a pointer")
+    return wrapper.section("data", "an object")
+
+
 def _data(entry: Section) -> Section:
     """The object of an entry, with the keys of its bases among its own."""
-    wrapper = entry.section("value", "an object").section("ptr_wrapper", "a pointer")
-    data = wrapper.section("data", "an object")
+    data = _object(entry)
     return Section(data.file, data.key, _flat(data.values))
 
 
@@ -123,6 +127,7 @@ def _camera(entry: Section, names: dict[float, str], given: Given) -> Camera:
     model, key, coefficients = MODELS[kind]
     data = _data(entry)
     data.only((*LENS, *((key,) if key else ())))
+    _object(entry).knows("*")  # of which there are no others
     focal = data.number("focal_length", "pixels")
     cx, cy = data.numbers("principal_point", "two pixels", 2)
     params = {"fx": focal, "fy": focal, "cx": cx, "cy": cy}

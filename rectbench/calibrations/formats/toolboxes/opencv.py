@@ -233,7 +233,7 @@ def check_pinhole(where: str, coefficients: Mapping[str, float], remedy: str, is
         found = shown(numbers)
         raise InvalidInput(f"{where} is {found}, more of a fisheye's than a pinhole's; expected {remedy}")
     if not is_usual:
-        tell(f"{where}: taken for a pinhole's k1 k2 p1 p2; a word on the lens would be {remedy}")
+        tell(f"{where}: taken for a pinhole's k1 k2 p1 p2; to say so or otherwise: {remedy}")
 
 
 def _read_lens(files: Files, number: int) -> str | None:

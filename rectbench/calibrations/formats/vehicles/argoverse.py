@@ -9,26 +9,23 @@
 The tables of Argoverse 2 are Feather files; as JSON they are lists of rows, or pandas' columns. The images
 of both are undistorted already (argoverse-api #81, av2-api #219), so the distortion in the files, that of
 the cameras, is no part of the lens, which is told. Argoverse 1 tells no image size: 1920x1200 for its ring
-cameras, 2464x2056 for its stereo pair. Pixel (0, 0) is the centre of a pixel. stereo_front_left and right
-are the first two cameras, where there are such; others are asked for by their names.
+cameras, 2464x2056 for its stereo pair. Pixel (0, 0) is the centre of a pixel. Of more than two cameras it is
+asked which are left and right, such as stereo_front_left and stereo_front_right.
 """
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Sequence
 from typing import Any
 
 from rectbench.calibrations.assembling import camera_of, rigid, single
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
-from rectbench.calibrations.documents import Section, Source
+from rectbench.calibrations.documents import Section, Source, tell
 from rectbench.calibrations.named_cameras import by_name, quaternion_rotation, rig_of_named
 from rectbench.cameras import Camera
-from rectbench.errors import InvalidInput
+from rectbench.errors import InvalidInput, argument
 from rectbench.rigs.rig import Rig
 from rectbench.types import FloatArray
-
-log = logging.getLogger("rectbench.calibrations")
 
 FIRST = "camera_data_"
 SIZES = {"ring": (1920, 1200), "stereo": (2464, 2056)}
@@ -66,7 +63,9 @@ def _read_first(entry: Section, given: Given) -> PosedCamera:
     _tell(value, value.values.get("distortion_coefficients_"), "distortion_coefficients_")
     size = given.size or SIZES.get(name.partition("_")[0])
     if size is None:
-        raise InvalidInput(f"{value.where}: tells no image size; expected `size=` beside the file")
+        raise InvalidInput(
+            f"{value.where}: tells no image size; expected `{argument('size')}` beside the file"
+        )
     pose = value.section("vehicle_SE3_camera_", "rotation and translation")
     rotation = pose.section("rotation", "coefficients")
     T = rigid(
@@ -109,7 +108,7 @@ def _read_pose(row: Section) -> FloatArray:
 
 def _tell(section: Section, distortion: Any, key: str) -> None:
     if isinstance(distortion, list) and any(distortion):
-        log.warning("%s: left out, as Argoverse's images are undistorted", section.at(key))
+        tell(f"{section.file}: {key}: left out, as Argoverse's images are undistorted")
 
 
 def _rows(source: Source, marks: set[str]) -> list[Section]:

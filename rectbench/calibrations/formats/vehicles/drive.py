@@ -4,8 +4,8 @@ Properties are words: `Model` ftheta, `width`, `height`, `cx`, `cy`, and `bw-pol
 `polynomial-type`, and `linear-c`, `-d`, `-e`. (0.5, 0.5) is the centre of the top-left pixel, as
 DriveWorks' rays go through pixel + 0.5 - cx. `roll-pitch-yaw`, degrees about the fixed x, y and z, and `t`,
 metres, take points of the sensor, x forward, y left, z up, to the rig; `correction_sensor_R_FLU` is turned
-by before that, and `correction_rig_T` is added to t. Cameras go by their names; the first two are left and
-right, unless others are asked for.
+by before that, and `correction_rig_T` is added to t. Cameras go by their names; of more than two it is
+asked which are left and right.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from scipy.spatial.transform import Rotation
 
 from rectbench.calibrations.assembling import rigid, single
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
-from rectbench.calibrations.documents import Section, Source, finite_number
+from rectbench.calibrations.documents import Section, Source, finite_number, tell
 from rectbench.calibrations.formats.vehicles.f_theta_keys import f_theta_camera
 from rectbench.calibrations.named_cameras import by_name, refuse_unread, rig_of_named
 from rectbench.errors import InvalidInput
@@ -41,6 +41,9 @@ def _read(sources: Sequence[Source], given: Given) -> Rig:
     rig = source.document.section("rig", "the rig's sensors")
     entries = rig.section_of_list("sensors")
     sensors = [entries.section(place, "a sensor") for place in entries.values]
+    for sensor in sensors:
+        if not _is_camera(sensor):
+            sensor.knows("*")
     cameras = by_name(
         (sensor.text("name", "the sensor's name"), sensor) for sensor in sensors if _is_camera(sensor)
     )
@@ -59,6 +62,10 @@ def _read_posed(sensor: Section, given: Given) -> PosedCamera:
     properties.choice("Model", ("ftheta",))
     size = properties.sides("width", "height", given.size)
     centre = (properties.number("cx", "pixels") - 0.5, properties.number("cy", "pixels") - 0.5)
+    missing = [key for key in LINEAR if key not in properties]
+    missing += [key for key in (TURN, SHIFT) if key not in sensor]
+    if missing:
+        tell(f"{sensor.where} has no {', '.join(missing)}; taken to be none")
     key = next((key for key in POLYNOMIALS if key in properties), POLYNOMIALS[0])
     known = {"bw-poly": True, "fw-poly": False}
     by_distance = known[key] if key in known else TYPES[properties.choice("polynomial-type", TYPES)]

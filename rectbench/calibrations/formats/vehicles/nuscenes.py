@@ -3,8 +3,8 @@
 A record has a camera's `camera_intrinsic`, K, and its pose in the vehicle: `rotation` (w, x, y, z) and
 `translation`, metres, take the camera's points there (nuScenes' schema). The images are rectified, 1600x900
 pixels, pixel (0, 0) the centre of one. Cameras go by their channels, such as CAM_FRONT, or where a channel
-has several records, of several logs, by these' tokens; the first two are left and right, unless others are
-asked for.
+has several records, of several logs, by these' tokens; of more than two it is asked which are left
+and right.
 """
 
 from __future__ import annotations
@@ -32,6 +32,9 @@ def _read(sources: Sequence[Source], given: Given) -> Rig:
     source = next(source for source in sources if _recognises(source))
     channels = _channels(source, [other for other in sources if other is not source])
     records = [record for record in source.records if record.values.get(INTRINSIC)]
+    for other in source.records:
+        if not other.values.get(INTRINSIC):
+            other.knows("*")  # a lidar or a radar
     names = [_name(record, channels) for record in records]
     count = Counter(names)
     tokens = [
