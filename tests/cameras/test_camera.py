@@ -70,7 +70,8 @@ def test_scaling_keeps_the_image_and_moves_its_pixels(camera, factor):
     expected = (pixels + 0.5) * [sx, sy] - 0.5
     both = seen & still_seen
     assert both.sum() > 0.95 * seen.sum()
-    np.testing.assert_allclose(moved[both], expected[both], rtol=1e-9, atol=1e-7)
+    # At the edge of a domain, where the angle no longer grows with the radius, rounding is magnified.
+    np.testing.assert_allclose(moved[both], expected[both], rtol=1e-9, atol=1e-6)
 
 
 def test_contains_counts_the_outer_half_pixels():
