@@ -42,7 +42,7 @@ class PerspectiveFrame(NamedTuple):
     def of(cls, rig: Rig) -> PerspectiveFrame:
         """That of a rig: looking ahead, with the sources' middles in the middle, where this shows them.
 
-        Where a source's middle is far off in that plane or behind it, as where a camera looks along the
+        Where a source's middle is far off in that plane or behind it, as of a camera that looks along the
         baseline, the plane is turned about the baseline to where it shows most of both views. Raises
         Unsupported where no such plane shows both.
         """
