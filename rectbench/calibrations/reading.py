@@ -47,7 +47,9 @@ def load_rig(
 
     Formats: see `calibration_formats`; each has a module in `rectbench.calibrations.formats` that says what
     it reads. The first camera of a file, or of a list, is the left one; cameras are never swapped, and a
-    right camera on the left is logged as a warning.
+    right camera on the left is logged as a warning. So are, in one line each, what looks like part of a lens
+    or a pose and was not read, what was assumed where a file leaves it open, statements that contradict each
+    other, and what is improbable.
 
     Raises UnknownName for a name that no rig has, and InvalidInput in one line that names file, key
     and what was expected for files that hold no rig.

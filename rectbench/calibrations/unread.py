@@ -8,8 +8,10 @@ one stands, and has all that was read of that one.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from heapq import nlargest
+from operator import itemgetter
 from typing import Any
 
 import numpy as np
@@ -39,6 +41,9 @@ from rectbench.rigs.rig import Rig
 
 MAX_KEYS = 6
 """Of a file's unread keys, as many are named."""
+
+MOST_COMPARED = 4
+"""Siblings of which most was read, that a mapping is compared with."""
 
 AGREEMENT = 0.05
 """By how much, relative, a length or angle that a file says again may differ; some are nominal."""
@@ -127,12 +132,12 @@ def _has_no_distortion(rig: Rig) -> bool:
 
 def _unread(entries: Entries, path: str) -> Iterator[Part]:
     """The unread keys of lens or pose below a mapping."""
-    children = [value for key, value in entries.items() if _is_held(key) and not _is_matrix(value)]
+    siblings = _most_read(value for key, value in entries.items() if not _is_matrix(value) and _is_held(key))
     for key, value in entries.items():
         is_read_leaf = key in entries.asked and not isinstance(value, dict | list)
         if is_read_leaf or not _is_held(key) or _is_blank(value):
             continue
-        if not _is_matrix(value) and _is_other_camera(value, children):
+        if not _is_matrix(value) and _is_other_camera(value, siblings):
             continue
         if key in entries.asked and not _is_untouched(value):
             yield from _below(value, f"{path}{key}")
@@ -145,8 +150,9 @@ def _below(value: Any, path: str) -> Iterator[Part]:
     if isinstance(value, Entries):
         yield from _unread(value, f"{path}.")
     elif isinstance(value, list) and _holds_mapping(value):
+        siblings = _most_read(value)
         for place, item in enumerate(value):
-            if isinstance(item, Entries | list) and not _is_other_camera(item, value):
+            if isinstance(item, Entries | list) and not _is_other_camera(item, siblings):
                 yield from _below(item, f"{path}.{place}")
 
 
@@ -228,13 +234,20 @@ def _asked(value: Any) -> int:
     return sum(map(_asked, value)) if isinstance(value, list) and _holds_mapping(value) else 0
 
 
-def _is_other_camera(value: Any, siblings: Sequence[Any]) -> bool:
+def _most_read(values: Iterable[Any]) -> list[tuple[int, Any]]:
+    """Of the mappings and lists among the values those of which most was read, and how many keys that is."""
+    counted = [(_asked(value), value) for value in values if isinstance(value, dict | list)]
+    return nlargest(MOST_COMPARED, (one for one in counted if one[0]), key=itemgetter(0))
+
+
+def _is_other_camera(value: Any, most_read: Sequence[tuple[int, Any]]) -> bool:
     """Whether a mapping was read at most half as far as a sibling, all of whose read keys it has."""
+    if not isinstance(value, dict | list) or not most_read:
+        return False
     count = _asked(value)
-    return isinstance(value, dict | list) and any(
-        sibling is not value and 2 * count <= _asked(sibling) > 0 and _has_what_was_read(value, sibling)
-        for sibling in siblings
-        if isinstance(sibling, dict | list)
+    return any(
+        sibling is not value and 2 * count <= read and _has_what_was_read(value, sibling)
+        for read, sibling in most_read
     )
 
 

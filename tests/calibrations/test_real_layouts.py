@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rectbench import InvalidInput, Rig, load_rig
+from rectbench import InvalidInput, Rig, load_rig, rectifying_rotations
 
 FOLDER = "calibrations-that-fail"
 DOUBLE = (2.0, 0.0, 0.0)
@@ -109,3 +109,17 @@ def test_of_kalibr_s_three_cameras_two_are_asked_for(
     rig = load_rig(layouts / "kalibr3.yaml", cameras=names)
     np.testing.assert_allclose(rig.R_right_left, truth["R"], atol=1e-9)
     np.testing.assert_allclose(rig.t_right_left, truth["t"], atol=1e-9)
+
+
+def test_a_polynomial_that_turns_inside_the_image_is_told(
+    layouts: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    load(layouts, "echo6_l.yaml", "echo6_r.yaml")
+    left, _ = caplog.messages
+    assert "the left camera's distortion turns at 48.7° from the axis, inside the image" in left
+
+
+def test_a_vertical_pair_is_turned_so_that_disparity_is_positive(layouts: Path) -> None:
+    rig = load(layouts, "kalibr_vertical.yaml")
+    R_rect_left, _ = rectifying_rotations(rig)
+    np.testing.assert_allclose(R_rect_left @ rig.centre_right_in_left, [rig.baseline_m, 0, 0], atol=1e-12)
