@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import ClassVar
 
@@ -16,7 +16,7 @@ from rectbench.plugins.rectifier import OptionsT, Problem, Rectifier
 from rectbench.rigs import Rig
 from rectbench.types import FloatArray, Matches
 from rectbench.warps.frame import centre_resolution_px, refuse_epipole_in_view
-from rectbench.warps.rectification import Rectification
+from rectbench.warps.rectification import Rectification, in_frame
 from rectbench.warps.targets import Perspective
 from rectbench.warps.view.extent import perspective_size
 from rectbench.warps.warp import Warp
@@ -118,6 +118,7 @@ class HomographyRectifier(Rectifier[OptionsT]):
             _turned(camera, centring @ H @ view.K)
             for camera, H in ((problem.rig.left, H_left), (problem.rig.right, H_right))
         ]
+        _require_both_shown(problem, warps, view.size)
         stated = {"view_fov_deg": view.fov_deg, "view_matches": float(len(view.matches.left))}
         return Rectification(problem.rig, warps[0], warps[1], view.size, {**notes, **stated})
 
@@ -132,6 +133,17 @@ def _require_no_epipole(rig: Rig, view: Camera) -> None:
             "an epipole lies in the undistorted view, which no homography can rectify; expected a method "
             "that works from the pose"
         ) from None
+
+
+def _require_both_shown(problem: Problem, warps: Sequence[Warp], size: tuple[int, int]) -> None:
+    """Raise Unsupported where an image is turned out of the frame, or mirrored in it."""
+    for warp, pixels in zip(warps, (problem.pixels_left, problem.pixels_right), strict=True):
+        shown = in_frame(warp.forward(pixels), size)
+        if not shown.any() or not (np.linalg.det(warp.jacobian(pixels[shown])) > 0).all():
+            raise Unsupported(
+                "no pair of homographies shows both undistorted views, so far do the cameras look apart; "
+                "expected a method that works from the pose"
+            )
 
 
 def _centring(centre: FloatArray, H_left: FloatArray, H_right: FloatArray) -> FloatArray:

@@ -42,9 +42,9 @@ class PerspectiveFrame(NamedTuple):
     def of(cls, rig: Rig) -> PerspectiveFrame:
         """That of a rig: looking ahead, with the sources' middles in the middle, where this shows them.
 
-        Where a source's middle is far off in that plane or behind it, as where a camera looks along the baseline,
-        the plane is turned about the baseline to where it shows most of both views. Raises Unsupported
-        where no such plane shows both.
+        Where a source's middle is far off in that plane or behind it, as of a camera that looks along the
+        baseline, the plane is turned about the baseline to where it shows most of both views. Raises
+        Unsupported where no such plane shows both.
         """
         rotations = forward_rotations(rig)
         cameras = rig.left.whole, rig.right.whole
