@@ -10,8 +10,11 @@ from typing import Any
 
 import numpy as np
 
+from rectbench.calibrations.choosing import Pair as Pair
+from rectbench.calibrations.choosing import chosen as chosen
 from rectbench.calibrations.contract import UNITS, Given, PosedCamera
-from rectbench.calibrations.documents import Section, Source, errors_at, shown
+from rectbench.calibrations.documents import Section, Source, errors_at
+from rectbench.calibrations.rectified_pair import in_one_frame
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig
@@ -19,9 +22,6 @@ from rectbench.types import FloatArray
 
 LONGEST_BASELINE_M = 10.0
 """A longer baseline is rather one in millimetres; it is believed where the unit is stated."""
-
-MAX_NAMES = 20
-"""Of a file's cameras, as many are named in an error."""
 
 POSE_FILE = (
     "a third file with the pose, `R_right_left: [[...], ...]` and `t_right_left: [x, y, z]`, or "
@@ -73,7 +73,7 @@ def side_by_side(
 
 def rig_of_posed(posed: Sequence[PosedCamera], given: Given, name: str, unit: str | None = None) -> Rig:
     """The rig of two cameras, left and right, that stand in one frame."""
-    left, right = posed
+    left, right = in_one_frame(*posed)
     where = f"{left.where} and {right.where}"
     if left.T_shared_camera is None or right.T_shared_camera is None:
         unposed = left if left.T_shared_camera is None else right
@@ -83,17 +83,6 @@ def rig_of_posed(posed: Sequence[PosedCamera], given: Given, name: str, unit: st
     with np.errstate(all="ignore"):  # what is not finite is said below
         T = inverse(right.T_shared_camera) @ left.T_shared_camera
     return assembled(left.camera, right.camera, T, given, where, name, unit)
-
-
-def chosen(names: Sequence[str], given: Given, file: str) -> tuple[str, str]:
-    """The left and the right of a file's cameras: those asked for, or else its first two."""
-    for name in given.cameras or ():
-        if name not in names:
-            known = ", ".join(shown(name) for name in names[:MAX_NAMES])
-            raise InvalidInput(f"{file}: has no camera {shown(name)}; expected two of {known}")
-    if len(names) < 2:
-        raise InvalidInput(f"{file}: holds {len(names)} cameras; expected two at least")
-    return given.cameras or (names[0], names[1])
 
 
 def camera_of(
@@ -112,9 +101,12 @@ def rig_of_list(
     source: Source, cameras: Section, read: Callable[[Section, Given], PosedCamera], given: Given
 ) -> Rig:
     """The rig of two cameras of a list, which are called cam0, cam1, ... by their places."""
-    names = chosen([f"cam{place}" for place in cameras.values], given, source.path)
-    sections = (cameras.section(name.removeprefix("cam"), "a camera") for name in names)
-    return rig_of_posed([read(section, given) for section in sections], given, source.name)
+
+    def rig_of(names: Pair) -> Rig:
+        sections = (cameras.section(name.removeprefix("cam"), "a camera") for name in names)
+        return rig_of_posed([read(section, given) for section in sections], given, source.name)
+
+    return rig_of(chosen([f"cam{place}" for place in cameras.values], given, source.path, rig_of))
 
 
 def single(sources: Sequence[Source]) -> Source:

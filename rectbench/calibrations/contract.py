@@ -1,5 +1,10 @@
 """What a calibration format is: how its files are recognised, and what is read from them.
 
+What looks like part of a lens or a pose in a `Source`'s document, table or `section`, and was not asked for
+while the file was read, is told by the framework (`rectbench.calibrations.unread`). A reader says of keys
+that it need not read, such as what follows from the others, that it knows them (`Section.knows`); of what it
+assumes, that it does (`documents.tell`).
+
 How one is written is in `rectbench.rigs.file_formats`. A format is one object of these classes in a file of
 its own below `rectbench.calibrations.formats`, or in a package's module that is announced as an entry point
 of the group `rectbench.formats`.
@@ -44,12 +49,15 @@ class PosedCamera:
     """A camera of a file, and how it stands in a frame that it shares with the other camera's file.
 
     X_shared = T_shared_camera X_camera, a 4x4 rigid transformation in the file's unit; None where
-    the file does not tell. `where` is the file, and the key, for errors.
+    the file does not tell. `where` is the file, and the key, for errors. Where the file tells it by a
+    rectification, `projection` is the 3x4 matrix P of that, which may have to be looked at together with the
+    other camera's.
     """
 
     where: str
     camera: Camera
     T_shared_camera: FloatArray | None = field(default=None, repr=False)
+    projection: FloatArray | None = field(default=None, repr=False)
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 import re
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
@@ -11,14 +10,12 @@ from typing import TypeVar
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from rectbench.calibrations.assembling import chosen, rig_of_posed
+from rectbench.calibrations.assembling import Pair, chosen, rig_of_posed
 from rectbench.calibrations.contract import Given, PosedCamera
-from rectbench.calibrations.documents import Section, Source, one_line
+from rectbench.calibrations.documents import Section, Source, one_line, tell
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig
 from rectbench.types import FloatArray
-
-log = logging.getLogger("rectbench.calibrations")
 
 Entry = TypeVar("Entry")
 
@@ -43,10 +40,25 @@ def rig_of_named(
     read: Callable[[Entry], PosedCamera],
     given: Given,
     unit: str | None = None,
+    pairs: Iterable[Pair] = (),
 ) -> Rig:
-    """The rig of two of a file's cameras: those asked for, by their names or the last parts of these."""
-    names = chosen(list(cameras), _full_names(given, list(cameras)), source.path)
-    return rig_of_posed([read(cameras[name]) for name in names], given, source.name, unit)
+    """The rig of two of a file's cameras: those asked for, by their names or the last parts of these.
+
+    Where none are asked for, the first of `pairs` that the file has is left and right, if there is any.
+    """
+
+    def rig_of(names: Pair) -> Rig:
+        return rig_of_posed([read(cameras[name]) for name in names], given, source.name, unit)
+
+    return rig_of(pair_of(list(cameras), pairs, _full_names(given, list(cameras)), source.path, rig_of))
+
+
+def pair_of(
+    names: Sequence[str], pairs: Iterable[Pair], given: Given, file: str, rig_of: Callable[[Pair], Rig]
+) -> Pair:
+    """The cameras asked for; or else the first of `pairs` that is there, which says itself what is left."""
+    there = next((pair for pair in pairs if set(pair) <= set(names)), None)
+    return there if there and given.cameras is None else chosen(names, given, file, rig_of)
 
 
 def by_name(entries: Iterable[tuple[str, Entry]]) -> dict[str, Entry]:
@@ -96,7 +108,7 @@ def refuse_unread(section: Section, known: Collection[str]) -> None:
 def told_scale(where: str, given: Given) -> str:
     """The unit of a reconstruction, whose scale nothing need have fixed: that given, or else metres, told."""
     if given.unit is None:
-        log.warning("%s: its scale is arbitrary unless something fixed it; taken to be in metres", where)
+        tell(f"{where}: its scale is arbitrary unless something fixed it; taken to be in metres")
     return given.unit or "m"
 
 
@@ -104,10 +116,8 @@ def told_unit(where: str, baseline: float, longest: float, unit: str, given: Giv
     """The unit of a file that leaves it open: that given, or metres; for a longer baseline `unit`, told."""
     if given.unit is not None or not baseline > longest:
         return given.unit or "m"
-    log.warning(
-        "%s: the baseline is %.4g, too long for metres; taken to be in %s (unit= says otherwise)",
-        where,
-        baseline,
-        unit,
+    tell(
+        f"{where}: the baseline is {baseline:.4g}, too long for metres; taken to be in {unit} "
+        "(unit= says otherwise)"
     )
     return unit

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 import os
 from collections.abc import Sequence
 from dataclasses import replace
@@ -12,13 +11,13 @@ from rectbench.calibrations import pose_file
 from rectbench.calibrations.assembling import assembled, rig_of_posed
 from rectbench.calibrations.built_in_rigs import built_in_rig, may_be_rig_name
 from rectbench.calibrations.contract import CameraFormat, Given, RigFormat
-from rectbench.calibrations.documents import Source, checked_size, one_line, shown
+from rectbench.calibrations.documents import Source, checked_size, one_line, shown, tell, telling
 from rectbench.calibrations.documents.sources import is_folder, sources_in
+from rectbench.calibrations.plausibility import tell_implausible
 from rectbench.calibrations.recognising import calibration_formats, camera_format, formats, is_known
+from rectbench.calibrations.unread import tell_unread
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig
-
-log = logging.getLogger("rectbench.calibrations")
 
 RigSource = str | os.PathLike[str]
 
@@ -42,7 +41,8 @@ def load_rig(
     unit : what translations are in, "m", "cm", "mm", "in" or "ft", for files that do not tell; metres
         where left out, and then a baseline beyond 10 m is an error.
     cameras : names of the left and the right camera in a file with more than two: `["cam0", "cam3"]` of a
-        Kalibr chain or a Basalt calibration, two images of a COLMAP model. The first two where left out.
+        Kalibr chain or a Basalt calibration, two images of a COLMAP model. A file with more than two is asked
+        about where they are left out, but for KITTI's, COLMAP's and OAK's, which have a first pair.
 
     Formats: see `calibration_formats`; each has a module in `rectbench.calibrations.formats` that says what
     it reads. The first camera of a file, or of a list, is the left one; cameras are never swapped, and a
@@ -59,14 +59,14 @@ def load_rig(
     given = Given(None if size is None else checked_size(size), unit, _checked_cameras(cameras))
     if isinstance(source, list | tuple) and len(source) == 1:
         (source,) = source
-    if isinstance(source, str | os.PathLike):
-        if isinstance(source, str) and may_be_rig_name(source):
-            return built_in_rig(source)
-        return _checked_order(_read([source], given))
-    paths = list(source) if isinstance(source, Sequence) else []
+    if isinstance(source, str) and may_be_rig_name(source):
+        return built_in_rig(source)
+    paths = [source] if isinstance(source, str | os.PathLike) else []
+    paths = list(source) if not paths and isinstance(source, Sequence) else paths
     if not paths or not all(isinstance(path, str | os.PathLike) for path in paths):
         raise InvalidInput("a rig's files are an empty list or hold no paths; expected a list of paths")
-    return _checked_order(_read(paths, given))
+    with telling():
+        return _checked_order(_read(paths, given))
 
 
 def load_rig_of_images(
@@ -102,23 +102,30 @@ def _read(paths: list[RigSource], given: Given) -> Rig:
 def _read_sources(sources: list[Source], given: Given) -> Rig:
     for format in formats():
         if any(format.recognises(source) for source in sources):
-            if isinstance(format, CameraFormat):
-                return _read_cameras(sources, given)
-            _check_choice(sources[0], format, given)
-            return format.read(sources, given)
+            for source in sources:
+                source.forget()
+            rig = _read_by(format, sources, given)
+            tell_unread(sources, rig)
+            tell_implausible(rig)
+            return rig
     _ = [source.document for source in sources]  # what is damaged says so itself
     raise InvalidInput(f"{sources[0].path}: is no calibration known here; expected {_expected()}")
+
+
+def _read_by(format: RigFormat | CameraFormat, sources: list[Source], given: Given) -> Rig:
+    if isinstance(format, CameraFormat):
+        return _read_cameras(sources, given)
+    _check_choice(sources[0], format, given)
+    return format.read(sources, given)
 
 
 def _checked_order(rig: Rig) -> Rig:
     """The rig as it is, with a warning in the log where its right camera stands on the left."""
     x, y, z = rig.centre_right_in_left
     if x < -max(abs(y), abs(z)):
-        log.warning(
-            "%s: the right camera stands %.3g m to the left of the left one; kept as the calibration has it, "
-            "to be named in the other order if that is not meant",
-            rig.name,
-            -x,
+        tell(
+            f"{rig.name}: the right camera stands {-x:.3g} m to the left of the left one; kept as the "
+            "calibration has it, to be named in the other order if that is not meant"
         )
     return rig
 

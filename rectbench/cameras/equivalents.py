@@ -10,6 +10,7 @@
 | unified with ξ = 0, without skew | pinhole |
 | extended-unified with β = 1 | double-sphere with ξ = 0, unified with ξ = α/(1-α) |
 | double-sphere with ξ = 0 or α = 0 | extended-unified, unified |
+| tilted-pinhole without tilt, radial-tangential without k4 and skew | pinhole |
 
 Same: every ray lands on the same pixel, to rounding. Where a domain ends may differ by some 1e-4 rad.
 """
@@ -19,6 +20,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
+from rectbench.cameras.brown import COEFFICIENTS
 from rectbench.cameras.camera import Camera
 from rectbench.cameras.lens import FOCAL_PARAMETERS
 
@@ -98,6 +100,16 @@ def _double_sphere(p: Params) -> Iterator[Lens]:
         yield "unified", _only(p, "xi")
 
 
+def _tilted_pinhole(p: Params) -> Iterator[Lens]:
+    if p["tau_x"] == p["tau_y"] == 0:
+        yield "pinhole", _only(p, *COEFFICIENTS)
+
+
+def _radial_tangential(p: Params) -> Iterator[Lens]:
+    if p["k4"] == p["skew"] == 0:
+        yield "pinhole", _only(p, "k1", "k2", "k3", "p1", "p2")
+
+
 def _only(p: Params, *names: str) -> dict[str, Any]:
     """Focal lengths, principal point, and these."""
     return {name: p[name] for name in (*FOCAL_PARAMETERS, *names)}
@@ -117,4 +129,6 @@ RULES: dict[str, Callable[[Params], Iterator[Lens]]] = {
     "unified": _unified,
     "extended-unified": _extended_unified,
     "double-sphere": _double_sphere,
+    "tilted-pinhole": _tilted_pinhole,
+    "radial-tangential": _radial_tangential,
 }

@@ -24,8 +24,9 @@ def rectifying_rotations(rig: Rig) -> tuple[FloatArray, FloatArray]:
     """(R_rect_left, R_rect_right), camera to rectified frame, after Bouguet.
 
     Each camera takes half the relative rotation; then the smallest rotation lays the baseline on
-    the x axis. The axis is taken as a line: a pair given right camera first keeps its images
-    upright, and has `signed_baseline_m` below zero.
+    the x axis, so that disparity is positive. A pair given right camera first, whose right camera stands
+    rather to the left of the left one than above, below, before or behind it, keeps its images upright
+    instead, and has `signed_baseline_m` below zero.
 
     >>> import rectbench as rb
     >>> rig = rb.load_rig("t265")
@@ -48,9 +49,9 @@ def signed_baseline_m(rig: Rig) -> float:
 
 
 def _smallest_rotation_onto_x(direction: FloatArray) -> FloatArray:
-    """The rotation of least angle that takes the line along `direction` to the x axis."""
-    # Of a vertical baseline both ends are equally near to x: rounding must not choose.
-    target = np.array([-1.0 if direction[0] < -1e-9 else 1.0, 0.0, 0.0])
+    """The rotation of least angle that takes `direction` to the x axis, or to -x where it points there."""
+    x, y, z = direction
+    target = np.array([-1.0 if x < -max(abs(y), abs(z)) else 1.0, 0.0, 0.0])
     w = np.cross(direction, target)
     cross = np.array([[0, -w[2], w[1]], [w[2], 0, -w[0]], [-w[1], w[0], 0]])
     rotation: FloatArray = np.eye(3) + cross + cross @ cross / (1 + direction @ target)

@@ -96,10 +96,12 @@ def test_every_projection_of_kalibr_becomes_its_camera(
     assert load_rig(path).left == expected
 
 
-def test_of_a_longer_chain_the_first_two_are_the_rig(path: Path) -> None:
+def test_a_camera_that_cannot_be_read_is_in_no_pair_that_is_listed(path: Path) -> None:
     two = load_rig(path)
     path.write_text(path.read_text() + "cam2:\n  camera_model: unheard of\n")
-    assert load_rig(path) == two
+    with pytest.raises(InvalidInput, match=r"holds 3 cameras; .* with two of them: cam0,cam1 [^;]*$"):
+        load_rig(path)
+    assert load_rig(path, cameras=("cam0", "cam1")) == two
 
 
 def test_opencv_s_yaml_header_is_no_hindrance(path: Path) -> None:

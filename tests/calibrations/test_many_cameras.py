@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -10,8 +11,10 @@ from typing import Any
 import numpy as np
 import pytest
 import yaml
+from scipy.spatial.transform import Rotation
 
 from rectbench import InvalidInput, load_rig
+from rectbench.calibrations import CamerasNotChosen
 from tests.calibrations.examples import EXAMPLES
 from tests.calibrations.test_every_format import written
 
@@ -73,6 +76,56 @@ def test_cameras_beyond_the_tenth_follow_the_ninth(tmp_path: Path) -> None:
     rig = load_rig(tmp_path / "chain.yaml", cameras=("cam9", "cam11"))
     step = np.array(chain["cam1"]["T_cn_cnm1"])
     np.testing.assert_allclose(rig.t_right_left, (step @ step)[:3, 3], atol=1e-12)
+
+
+def with_a_third(name: str, folder: Path) -> list[Path]:
+    """An example whose second camera is there a second time, under a name of its own."""
+    paths = written(EXAMPLES[name], folder)
+    for path in paths:
+        text = path.read_text()
+        content = (
+            json.loads(text) if path.suffix == ".json" else yaml.safe_load(text.replace("%YAML:1.0", ""))
+        )
+        for holder in (content, content.get("value0", {}), *content.get("sensors", [])):
+            for key in ("cameras", "intrinsics", "resolution", "T_imu_cam", "cameraData"):
+                if isinstance(holder.get(key), list):
+                    holder[key].append(json.loads(json.dumps(holder[key][1])))
+        if name == "kalibr":
+            content["cam2"] = {**content["cam1"], "T_cn_cnm1": np.diag([1.0, 1, 1, 1]).tolist()}
+            content["cam2"]["T_cn_cnm1"][0][3] = -0.05
+        path.write_text(json.dumps(content))
+    return paths
+
+
+@pytest.mark.parametrize("name", ["kalibr", "basalt", "ncamera", "ncamera-maplab", "okvis"])
+def test_of_three_cameras_the_pairs_are_listed_and_none_is_taken(tmp_path: Path, name: str) -> None:
+    paths = with_a_third(name, tmp_path)
+    with pytest.raises(CamerasNotChosen, match="holds 3 cameras; expected `cameras=`") as caught:
+        load_rig(paths)
+    assert caught.value.names == ("cam0", "cam1", "cam2")
+    assert "cam0,cam1 (baseline 0.11 m, " in str(caught.value)
+    assert "\n" not in str(caught.value)
+    rig = load_rig(paths, cameras=("cam0", "cam1"))
+    np.testing.assert_allclose(rig.t_right_left, EXAMPLES[name].rig.t_right_left, atol=1e-12)
+
+
+def test_the_pairs_that_see_most_in_common_come_first_and_left_is_left(tmp_path: Path) -> None:
+    chain = yaml.safe_load(EXAMPLES["openvins"].files["chain.yaml"].replace("%YAML:1.0", ""))
+    for name, turn_deg, x in (("cam0", 0, 0.0), ("cam1", 0, 0.1), ("cam2", 120, 0.2)):
+        chain[name] = {**chain["cam0"], "T_cam_imu": np.eye(4).tolist()}
+        R = Rotation.from_euler("y", -turn_deg, degrees=True).as_matrix()
+        T = np.eye(4)
+        T[:3, :3], T[:3, 3] = R, R @ [x, 0, 0]
+        chain[name]["T_cam_imu"] = T.tolist()
+    (tmp_path / "chain.yaml").write_text(yaml.safe_dump(chain))
+    with pytest.raises(CamerasNotChosen) as caught:
+        load_rig(tmp_path / "chain.yaml")
+    listed = re.findall(r"(cam\d,cam\d) \(baseline ([\d.]+) m, (\d+) %", str(caught.value))
+    assert listed[0] == ("cam1,cam0", "0.1", "100")
+    assert [float(share) for *_, share in listed[1:]] == sorted(
+        (float(share) for *_, share in listed[1:]), reverse=True
+    )
+    assert max(float(share) for *_, share in listed[1:]) < 60
 
 
 def changed_oak(change: Callable[[Any], None], folder: Path) -> Path:

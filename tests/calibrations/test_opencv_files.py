@@ -158,11 +158,14 @@ def test_a_fault_names_file_key_and_expectation(tmp_path: Path, change: dict, me
     assert "\n" not in str(caught.value)
 
 
-def test_a_tilted_sensor_is_refused(tmp_path: Path) -> None:
-    distortion = np.full(14, 0.01)
-    content = opencv_file(M1=K1, D1=distortion, M2=K2, D2=distortion, **POSE)
-    with pytest.raises(InvalidInput, match="tilts the sensor"):
-        load(tmp_path, content, size=(848, 800))
+def test_a_tilted_sensor_projects_as_opencv_s_does(tmp_path: Path) -> None:
+    distortion = np.linspace(-0.03, 0.04, 14)
+    content = opencv_file(M1=K1, D1=distortion, M2=K2, D2=distortion[:12], **POSE)
+    rig = load(tmp_path, content, size=(848, 800))
+    assert (rig.left.model, rig.right.model) == ("tilted-pinhole", "pinhole")
+    points = np.array([[0.3, -0.2, 1.0], [-0.5, 0.1, 1.2], [0.0, 0.0, 2.0]])
+    expected = cv2.projectPoints(points, np.zeros(3), np.zeros(3), K1, distortion)[0].reshape(-1, 2)
+    np.testing.assert_allclose(rig.left.project(points)[0], expected, atol=1e-9)
 
 
 def test_the_t265_s_own_file_is_the_built_in_rig(real_data: Path) -> None:

@@ -119,8 +119,7 @@ REFUSED: list[tuple[str, Change, str]] = [
     ("facebook360", set_at("cameras", 0, "focal", value=[285, 285]), "focal is .*expected .fx, -fy."),
     ("facebook360", set_at("cameras", 0, "up", value=[1.0, 0, 0]), "right, up, forward: it is no rotation"),
     ("facebook360", set_at("cameras", 0, "skew", value=1.0), "unknown key 'skew'"),
-    ("metashape", put("<k1>", "<k4>0.1</k4><k1>", 1), "is a frame with b2 = 1.5, .*k4 = 0.1"),
-    ("metashape", put("<b2>1.5</b2>", "<b2>1.5</b2><k3>0.1</k3>"), "is a frame with b2 = 1.5, .*k3 = 0.1"),
+    ("metashape-fisheye", put("<p1>", "<b2>0.5</b2><p1>"), "is a fisheye with b2 = 0.5, .*p1 = 0.001"),
     ("metashape", put("<p1>", "<p3>0.1</p3><p1>"), "p3 is '0.1'; expected 0"),
     ("metashape", put("<p1>", "<k5>0.1</k5><p1>"), "unknown key 'k5'"),
     ("metashape", put('type="frame"', 'type="spherical"'), "type is 'spherical'; expected frame, fisheye"),
@@ -247,8 +246,8 @@ def test_centimetres_and_millimetres_are_told_where_metres_cannot_be(
     assert "origin: the baseline is 11, too long for metres; taken to be in cm" in caplog.text
     np.testing.assert_allclose(rig.t_right_left, EXAMPLES["facebook360"].rig.t_right_left, atol=1e-12)
     caplog.clear()
-    assert loaded("facebook360", lambda _: None, tmp_path, unit="cm").baseline_m == pytest.approx(
-        EXAMPLES["facebook360"].rig.baseline_m / 100
+    assert loaded("facebook360", lambda _: None, tmp_path, unit="ft").baseline_m == pytest.approx(
+        EXAMPLES["facebook360"].rig.baseline_m * 0.3048
     )
     assert not caplog.records
 
@@ -260,8 +259,8 @@ def test_a_scale_that_nothing_fixed_is_told_unless_it_is_stated(
     rig = loaded(name, lambda content: content, tmp_path)
     assert "its scale is arbitrary unless something fixed it; taken to be in metres" in caplog.text
     caplog.clear()
-    assert loaded(name, lambda content: content, tmp_path, unit="mm").baseline_m == pytest.approx(
-        rig.baseline_m / 1000
+    assert loaded(name, lambda content: content, tmp_path, unit="ft").baseline_m == pytest.approx(
+        rig.baseline_m * 0.3048
     )
     assert not caplog.records
 

@@ -63,7 +63,7 @@ HOLDERS: dict[str, tuple[dict[str, float], set[str]]] = {
     "pinhole k3": ({"k3": -0.1}, {"opencv", "ros", "mrcal", "basalt", "colmap", "camodocal", "vins"}),
     "pinhole s4": ({"s4": 1e-4}, {"opencv", "mrcal"}),
     "kannala-brandt": ({"k1": 0.01}, {*SPHERES, "ros"}),
-    "kannala-brandt skew": ({"skew": 1.7}, {"opencv"}),
+    "kannala-brandt skew": ({"skew": 1.7}, {"opencv", "ros"}),
     "equidistant": ({}, {*SPHERES, "ros"}),
     "thin-prism-fisheye k1": ({"k1": 0.01}, {*SPHERES, "ros"}),
     "thin-prism-fisheye sx1": ({"sx1": 0.001}, {"colmap"}),
@@ -77,6 +77,13 @@ HOLDERS: dict[str, tuple[dict[str, float], set[str]]] = {
     "stereographic": ({}, {*SPHERES, "mrcal"}),
     "division": ({"k": -0.1}, {"colmap"}),
     "cahvor": ({"alpha": 0.01}, {"mrcal"}),
+    "tilted-pinhole tau_x": ({"k1": -0.1, "tau_x": 0.01}, {"opencv"}),
+    "tilted-pinhole k1": ({"k1": -0.1}, {*SPHERES, "ros", "mrcal"}),
+    "radial-tangential k4": ({"k1": -0.1, "k4": 0.01}, set()),
+    "radial-tangential k3": (
+        {"k3": -0.1},
+        {"opencv", "ros", "mrcal", "basalt", "colmap", "camodocal", "vins"},
+    ),
     "equisolid": ({}, set()),
     "orthographic": ({}, set()),
     "ocam": ({}, {"ocamcalib"}),
@@ -164,10 +171,10 @@ def test_a_refusal_names_lens_parameter_and_the_formats_that_hold_the_rig(tmp_pa
     skewed = Camera("kannala-brandt", (1280, 960), FIXED | {"skew": 1.7})
     rig = rig_of(FISHEYES.left, skewed)
     with pytest.raises(InvalidInput) as caught:
-        rig.save(tmp_path / "ros", "ros")
+        rig.save(tmp_path / "chain.yaml", "kalibr")
     assert str(caught.value) == (
-        "ros has no place for the right camera, kannala-brandt with skew = 1.7; "
-        "expected one of the formats that have: native, opencv"
+        "kalibr has no place for the right camera, kannala-brandt with skew = 1.7; "
+        "expected one of the formats that have: native, opencv, ros"
     )
     assert not any(tmp_path.iterdir())
 

@@ -27,6 +27,8 @@ MODELS = (
     "cahvor",
     "division",
     "f-theta",
+    "tilted-pinhole",
+    "radial-tangential",
 )
 
 
@@ -68,6 +70,14 @@ PARAMETERS = {
     | {"r0": within(-0.3, 0.3, 0), "r1": within(-0.3, 0.3, 0), "r2": within(-0.1, 0.1, 0)},
     "division": FOCAL | {"k": within(-0.6, 0.3, 0, -1e-9, -0.25)},
 }
+
+PARAMETERS["tilted-pinhole"] = PARAMETERS["pinhole"] | {n: within(-0.2, 0.2, 0) for n in ("tau_x", "tau_y")}
+PARAMETERS["radial-tangential"] = (
+    FOCAL
+    | {"k1": within(-0.3, 0.3, 0), "k2": within(-0.2, 0.2, 0), "skew": within(-20, 20, 0)}
+    | {"k3": within(-0.1, 0.1, 0), "k4": within(-0.05, 0.05, 0)}
+    | {name: within(-0.01, 0.01, 0) for name in ("p1", "p2")}
+)
 
 
 @st.composite

@@ -1,5 +1,7 @@
 """The models that OpenCV has too give its pixels."""
 
+from dataclasses import replace
+
 import cv2
 import numpy as np
 import pytest
@@ -40,6 +42,25 @@ def test_pinhole_is_calib3d_with_twelve_coefficients(camera):
         rays,
         cv2.projectPoints(rays, ZERO, ZERO, matrix(camera), coefficients(camera, COEFFICIENTS))[0],
     )
+
+
+@settings(max_examples=60)
+@given(cameras("tilted-pinhole"))
+def test_tilted_pinhole_is_calib3d_with_fourteen_coefficients(camera):
+    rays = domain_rays(camera, directions=12)
+    rays = rays[rays[:, 2] > 0.02]
+    all_of_them = coefficients(camera, (*COEFFICIENTS, "tau_x", "tau_y"))
+    compare(camera, rays, cv2.projectPoints(rays, ZERO, ZERO, matrix(camera), all_of_them)[0])
+
+
+@settings(max_examples=60)
+@given(cameras("radial-tangential"))
+def test_three_radial_terms_are_calib3d_s_first_five_coefficients(camera):
+    camera = replace(camera, params={**camera.params, "k4": 0.0, "skew": 0.0})
+    rays = domain_rays(camera, directions=12)
+    rays = rays[rays[:, 2] > 0.02]
+    first = coefficients(camera, COEFFICIENTS[:5])
+    compare(camera, rays, cv2.projectPoints(rays, ZERO, ZERO, matrix(camera), first)[0])
 
 
 @settings(max_examples=60)

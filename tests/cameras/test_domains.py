@@ -55,6 +55,9 @@ PHI = np.linspace(0, 6, 13)
         ("cahvor", {}, math.degrees(math.atan(1000))),
         # bent slope 0.5 (1 + 3 (-0.15/0.5) r²) = 0
         ("cahvor", {"r0": -0.5, "r1": -0.15}, math.degrees(math.atan(math.sqrt(1 / 0.9)))),
+        # slope 1 + 9 k4 r⁸ = 0
+        ("radial-tangential", {"k4": -0.01}, math.degrees(math.atan((1 / 0.09) ** 0.125))),
+        ("radial-tangential", {}, 90),
         ("division", {}, 90),
         ("division", {"k": -0.3}, 180),
         # θ = atan2(r, 1 + k r²) stops rising at r = 1/sqrt(k)
@@ -106,9 +109,18 @@ def test_the_radius_rises_up_to_the_edge_and_not_beyond(model, data):
         assert after < 0 or not np.isfinite(after) or after > 100 or slope < 0.05 * max(1.0, before)
 
 
+def test_a_tilted_sensor_ends_where_it_sees_the_lens_plane_nearly_edge_on():
+    camera = Camera("tilted-pinhole", SIZE, {**FOCAL, "tau_y": 0.2})
+    left, right = edge_angle(camera, np.array([math.pi, 0.0]))
+    assert math.tan(left) == pytest.approx((math.cos(0.2) - 0.05) / math.sin(0.2), rel=1e-9)
+    assert right > math.radians(89.99)
+
+
+@pytest.mark.parametrize("model", ["pinhole", "tilted-pinhole", "radial-tangential"])
 @settings(max_examples=60)
-@given(cameras("pinhole"))
-def test_no_two_rays_of_a_distorted_pinhole_share_a_pixel(camera):
+@given(data=st.data())
+def test_no_two_rays_of_a_distorted_pinhole_share_a_pixel(model, data):
+    camera = data.draw(cameras(model))
     rays = domain_rays(camera, per_direction=30, directions=16)
     jacobian = camera.project_jacobian(rays)
     turns_over = np.cross(jacobian[:, 0], jacobian[:, 1])

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import yaml
+
 from rectbench import load_rig
 from tests.calibrations.examples import EXAMPLES, FISHEYES
 from tests.conftest import Shell
@@ -26,6 +28,20 @@ def test_it_picks_cameras_and_limits_their_view(tmp_path: Path, shell: Shell) ->
     code, _, _ = shell("convert", tmp_path / "chain.yaml", "-o", tmp_path / "out.yaml", *options)
     assert code == 0
     assert load_rig(tmp_path / "out.yaml").left == FISHEYES.within(80).right
+
+
+def test_of_three_cameras_it_lists_the_pairs(tmp_path: Path, shell: Shell) -> None:
+    FISHEYES.save(tmp_path / "chain.yaml", "kalibr")
+    chain = yaml.safe_load((tmp_path / "chain.yaml").read_text())
+    (tmp_path / "chain.yaml").write_text(yaml.safe_dump(chain | {"cam2": chain["cam1"]}))
+    code, out, err = shell("convert", tmp_path / "chain.yaml", "-o", tmp_path / "out.yaml")
+    assert (code, out, err.count("\n")) == (2, "", 1)
+    assert "expected `cameras=` (--cameras LEFT,RIGHT) with two of them: cam0,cam1 (baseline 0.11 m" in err
+    code, *_ = shell(
+        "convert", tmp_path / "chain.yaml", "-o", tmp_path / "out.yaml", "--cameras", "cam0,cam1"
+    )
+    assert code == 0
+    assert load_rig(tmp_path / "out.yaml") == load_rig(tmp_path / "chain.yaml", cameras=("cam0", "cam1"))
 
 
 def test_it_takes_the_size_and_unit_that_a_file_lacks(tmp_path: Path, shell: Shell) -> None:

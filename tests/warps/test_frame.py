@@ -45,6 +45,17 @@ def test_a_vertical_rig_is_rolled_by_a_quarter_turn(y: float) -> None:
     np.testing.assert_allclose(R_rect_left[2], [0, 0, 1], atol=1e-12)
 
 
+@pytest.mark.parametrize(
+    "centre_m", [(-0.002, 0.064, 0.002), (-0.002, -0.064, 0.0), (-0.05, 0.06, 0.0), (-0.01, 0.0, 0.1)]
+)
+def test_of_a_vertical_a_slanted_or_a_forward_rig_disparity_is_positive(
+    centre_m: tuple[float, float, float],
+) -> None:
+    turned = rig(centre_m=centre_m, rotation_deg=(1, -2, 0.5))
+    R_rect_left, _ = rb.rectifying_rotations(turned)
+    assert (R_rect_left @ turned.centre_right_in_left)[0] == pytest.approx(turned.baseline_m)
+
+
 def test_an_epipole_in_the_view_is_refused_with_its_pixel() -> None:
     forward = rig(centre_m=(0.02, 0.0, 0.2))
     with pytest.raises(rb.Unsupported, match=r"epipole .* lies in the left view, at pixel \(\d+, \d+\)"):

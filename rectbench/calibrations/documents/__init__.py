@@ -9,3 +9,5 @@ from rectbench.calibrations.documents.numbers import finite_number as finite_num
 from rectbench.calibrations.documents.sections import Section as Section
 from rectbench.calibrations.documents.sections import parse_document as parse_document
 from rectbench.calibrations.documents.sources import Source as Source
+from rectbench.calibrations.documents.telling import tell as tell
+from rectbench.calibrations.documents.telling import telling as telling

@@ -35,6 +35,10 @@ def one_line(message: Any) -> str:
     return " ".join("".join(c if c.isprintable() else " " for c in str(message)).split())
 
 
-_SHORT = reprlib.Repr()
+class _Short(reprlib.Repr):
+    repr_Entries = reprlib.Repr.repr_dict
+
+
+_SHORT = _Short()
 _SHORT.maxstring = _SHORT.maxother = 40
 _SHORT.maxdict = 2

@@ -14,6 +14,8 @@ from xml.parsers import expat
 
 import yaml
 
+from rectbench.calibrations.documents.entries import Entries, as_entries
+
 MAX_CHARACTERS = 1 << 21
 """A longer text takes the parsers of JSON and XML a second, and a hundred megabytes."""
 
@@ -205,7 +207,7 @@ def _yaml_mapping(items: list[Any], start: Any) -> dict[str, Any]:
 
 
 def _mapping(pairs: list[tuple[Any, Any]]) -> dict[str, Any]:
-    mapping: dict[str, Any] = {}
+    mapping = Entries()
     for key, value in pairs:
         if not isinstance(key, str) or len(key) > MAX_KEY:
             raise Malformed("has a key that is no word")
@@ -227,7 +229,7 @@ def _toml(text: str) -> Any:
     except ValueError as error:  # also a number of more digits than Python takes
         raise Malformed(f"is no TOML ({error})") from None
     _check_depth(content)
-    return content
+    return as_entries(content)
 
 
 def _xml(text: str) -> Any:

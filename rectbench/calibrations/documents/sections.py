@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
+from fnmatch import fnmatchcase
 from typing import Any
 
 import numpy as np
 
+from rectbench.calibrations.documents.entries import take
 from rectbench.calibrations.documents.faults import errors_at, one_line, shown
 from rectbench.calibrations.documents.numbers import agreed_size, checked_size, finite_number, flat_numbers
 from rectbench.calibrations.documents.parsing import Malformed, parse
+from rectbench.calibrations.documents.telling import tell
 from rectbench.errors import InvalidInput, UnknownName
 from rectbench.rigs.rig import checked_rotation
 from rectbench.types import FloatArray
@@ -29,7 +32,11 @@ def parse_document(text: str, file: str) -> Section:
 
 @dataclass(frozen=True)
 class Section:
-    """A mapping in a calibration file, read by key; whatever is amiss is an InvalidInput."""
+    """A mapping in a calibration file, read by key; whatever is amiss is an InvalidInput.
+
+    A key counts as read once a reader asks for it; what looks like part of a lens or a pose and was not read
+    is told when the reader is done (`rectbench.calibrations.unread`).
+    """
 
     file: str
     key: str
@@ -59,6 +66,12 @@ class Section:
             if key not in choices:
                 raise InvalidInput(f"{self.at('')}{UnknownName('key', one_line(key), choices)}")
 
+    def knows(self, *patterns: str) -> None:
+        """Count the keys by these patterns as read: the reader knows that they tell nothing that it wants."""
+        for key in self.values:
+            if any(fnmatchcase(key, pattern) for pattern in patterns):
+                take(self.values[key])
+
     def section(self, key: str, expected: str) -> Section:
         """The mapping under `key`."""
         value = self.values.get(key)
@@ -86,8 +99,9 @@ class Section:
         return value
 
     def choice(self, key: str, known: Collection[str], default: str | None = None) -> str:
-        """The word under `key`, one of those known; `default`, if given, where the key is missing."""
+        """The word under `key`, one of those known; where it is missing, `default`, if any, which is told."""
         if default is not None and key not in self:
+            tell(f"{self.at(key)} is missing; taken to be {default}")
             return default
         word = self.text(key, ", ".join(known))
         if word not in known:

@@ -6,12 +6,14 @@ import errno
 import io
 import os
 import re
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 from rectbench.calibrations.documents.archives import MARK, parse_archive
+from rectbench.calibrations.documents.entries import Entries, as_entries, forget
 from rectbench.calibrations.documents.faults import one_line, shown
 from rectbench.calibrations.documents.parsing import Malformed, parse
 from rectbench.calibrations.documents.sections import Section, parse_document
@@ -25,6 +27,9 @@ SUFFIXES = {
     *(".npz",),
 }
 """What calibrations are called; in a folder, other files are not looked at."""
+
+RECORDS = "records"
+"""What errors call the list that a table is."""
 
 MAX_NAME = 200
 """Characters of a file name that a file may hold."""
@@ -67,11 +72,15 @@ def as_text(content: bytes, path: str) -> str:
 class Source:
     """One file: its path as the user gave it, and its first bytes.
 
-    `content` ends a byte beyond `MAX_BYTES` (4 MiB); a format whose files are larger reads `path`.
+    `content` ends a byte beyond `MAX_BYTES` (4 MiB); a format whose files are larger reads `path`. What was
+    made of it stands in `sections`, and files that were reached from it in `companions`, so that what a
+    reader left unread can be told.
     """
 
     path: str
     content: bytes
+    sections: dict[str, Section] = field(default_factory=dict, init=False, repr=False)
+    companions: list[Source] = field(default_factory=list, init=False, repr=False)
 
     @staticmethod
     def read(path: str | os.PathLike[str]) -> Source:
@@ -91,16 +100,29 @@ class Source:
     @cached_property
     def document(self) -> Section:
         """The YAML, JSON, XML or .npz that the file holds; raises InvalidInput where it holds none."""
-        if self.content.startswith(MARK):
-            return self._archive()
-        return parse_document(self.text, self.path)
+        is_archive = self.content.startswith(MARK)
+        self.sections["document"] = self._archive() if is_archive else parse_document(self.text, self.path)
+        return self.sections["document"]
+
+    def section(self, values: Mapping[str, Any], key: str = "") -> Section:
+        """Content that a format has parsed itself, under a key that errors name before its own."""
+        self.sections[f"parsed {key}"] = Section(self.path, key, as_entries(values))
+        return self.sections[f"parsed {key}"]
+
+    def forget(self) -> None:
+        """Count nothing of the file as read."""
+        self.companions.clear()
+        for section in self.sections.values():
+            forget(section.values)
+            if RECORDS in section.values:
+                section.values.get(RECORDS)  # cut up once, when the file was opened
 
     def _archive(self) -> Section:
         try:
             if len(self.content) <= MAX_BYTES:
-                return Section(self.path, "", parse_archive(io.BytesIO(self.content)))
+                return Section(self.path, "", Entries(parse_archive(io.BytesIO(self.content))))
             with Path(self.path).open("rb") as stream:  # whose maps and images are not read
-                return Section(self.path, "", parse_archive(stream))
+                return Section(self.path, "", Entries(parse_archive(stream)))
         except (Malformed, OSError) as error:
             raise InvalidInput(f"{self.path}: {one_line(error)}; expected NumPy's K1, D1, ...") from None
 
@@ -115,14 +137,16 @@ class Source:
             return ()
         if not isinstance(content, list) or not all(isinstance(record, dict) for record in content):
             return ()
-        return tuple(Section(self.path, f"[{place}].", record) for place, record in enumerate(content))
+        whole = self.section({RECORDS: content})
+        records = whole.section_of_list(RECORDS)
+        return tuple(records.section(place, "a record") for place in records.values)
 
     def table(self, mark: str) -> Section:
         """The lines `key mark words` by key: a word, or a list of several, without brackets and commas."""
         lines = (line.partition(mark) for line in self.text.splitlines())
         entries = {key.strip(): re.sub(r"[\[\];,]", " ", words).split() for key, _, words in lines}
         values = {key: words[0] if len(words) == 1 else words for key, words in entries.items()}
-        return Section(self.path, "", values)
+        return self.section(values)
 
     @cached_property
     def keys(self) -> frozenset[str]:
@@ -144,7 +168,9 @@ class Source:
             raise InvalidInput(
                 f"{self.path}: names the file {shown(name)}; expected one in its own folder or inside it"
             )
-        return Source.read(Path(self.path).parent / relative)
+        source = Source.read(Path(self.path).parent / relative)
+        self.companions.append(source)
+        return source
 
 
 def is_folder(path: str | os.PathLike[str]) -> bool:

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from rectbench.calibrations import holds_many, is_calibration, load_rig
+from rectbench.calibrations import CamerasNotChosen, holds_many, is_calibration, load_rig
 from rectbench.errors import InvalidInput
 from rectbench.images.reading import Grey, grey8, read_image
 from rectbench.pairs.finding.image_circle import angle_of_mask_deg, angle_of_rim_deg
@@ -40,6 +40,8 @@ class Calibration:
     """The lenses' image circle, where the files do not tell it."""
     cameras: tuple[str, str] | None = None
     """The left and the right one, by the file's names, where it holds more than two."""
+    is_first_pair: bool = False
+    """Whether these are the file's first two, since nobody said which."""
     remarks: tuple[str, ...] = field(default=(), compare=False)
     """What a reader of the report has to know about it."""
 
@@ -117,6 +119,11 @@ def _completed(one: Calibration, pairs: Sequence[FilePair]) -> Calibration:
     """
     try:
         one.rig()
+    except CamerasNotChosen as error:
+        left, right, *_ = error.names
+        told = f"of its {len(error.names)} cameras the first two, {left} and {right}, are taken"
+        first = replace(one, cameras=(left, right), is_first_pair=True, remarks=(told, *one.remarks))
+        return _completed(first, pairs)
     except InvalidInput as error:
         size = next((_size(pair.left) for pair in pairs if pair.left.is_relative_to(one.home)), None)
         for guess in _guesses(one, size):
@@ -133,7 +140,7 @@ def _guesses(one: Calibration, size: tuple[int, int] | None) -> Iterator[Calibra
     bases = [one]
     if size is not None:
         told = f"its image size, which the file leaves out, is the images' {size[0]}x{size[1]}"
-        bases.append(replace(one, size=size, remarks=(told,)))
+        bases.append(replace(one, size=size, remarks=(*one.remarks, told)))
         yield bases[1]
     if one.unit is None:
         told = f"its baseline, whose unit the file leaves open, is taken to be in {UNSTATED_UNIT}"
@@ -165,12 +172,14 @@ def with_cameras_of(one: Calibration, pair: FilePair) -> Calibration | None:
     none of these numbers: its first two cameras are others.
     """
     numbers = camera_numbers(pair)
-    if numbers is None or one.cameras is not None or not holds_many(one.files[0]):
+    is_stated = one.cameras is not None and not one.is_first_pair
+    if numbers is None or is_stated or not holds_many(one.files[0]):
         return one
     left, right = numbers
     for spelled in ("cam{}", "{:02d}", "P{}"):
         names = spelled.format(left), spelled.format(right)
-        chosen = replace(one, name=f"{one.name}-{names[0]}-{names[1]}", cameras=names)
+        name, remarks = f"{one.name}-{names[0]}-{names[1]}", one.remarks[one.is_first_pair :]
+        chosen = replace(one, name=name, cameras=names, is_first_pair=False, remarks=remarks)
         try:
             chosen.rig()
         except InvalidInput:

@@ -8,6 +8,7 @@ from tests.calibrations.examples import (
     datasets,
     devices,
     exports,
+    fisheye_dialects,
     odometry,
     photogrammetry,
     toolboxes,
@@ -34,6 +35,7 @@ EXAMPLES: dict[str, Example] = {
     **devices.EXAMPLES,
     **photogrammetry.EXAMPLES,
     **vehicles.EXAMPLES,
+    **fisheye_dialects.EXAMPLES,
 }
 """By the name of the format, with what tells its variants apart."""
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -149,6 +150,18 @@ def boofcv() -> Example:
     return Example({"stereo.yaml": yaml.safe_dump(content)}, PINHOLES, options={"unit": "mm"})
 
 
+def boofcv_four() -> Example:
+    """With a fourth radial coefficient, of r⁸, as its calibration of wide lenses estimates it."""
+    content = yaml.safe_load(boofcv().files["stereo.yaml"])
+    rig = PINHOLES
+    for side, k4 in (("left", -0.0003), ("right", 0.0002)):
+        content[side]["radial_tangential"]["radial"] += [0.009, k4]
+        params = {**getattr(rig, side).params, "k3": 0.009, "k4": k4}
+        params = {n: v for n, v in params.items() if n in (*FOCAL, "k1", "k2", "k3", "k4", "p1", "p2")}
+        rig = replace(rig, **{side: Camera("radial-tangential", SIZE, params)})
+    return Example({"stereo.yaml": yaml.safe_dump(content)}, rig, options={"unit": "mm"})
+
+
 def opencv(suffix: str) -> Example:
     return Example({f"stereo{suffix}": opencv_file(suffix, **WHOLE_RIG)}, FISHEYES)
 
@@ -156,6 +169,7 @@ def opencv(suffix: str) -> Example:
 def opencv_samples() -> Example:
     """samples/cpp/stereo_calib.cpp: no image size, a file for the pose, here with squares in millimetres."""
     R1, R2, P1, P2 = rectification()
+    P2[0, 3] *= 1000
     rectified = {"R1": R1, "R2": R2, "P1": P1, "P2": P2, "Q": np.eye(4)}
     distortion = {"D1": np.array([[*RADTAN1, 0.0]]), "D2": np.array([[*RADTAN2, 0.0]])}
     files = {
@@ -286,6 +300,7 @@ EXAMPLES: dict[str, Example] = {
     "matlab": matlab(),
     "matlab-fisheye": matlab_fisheyes(),
     "boofcv": boofcv(),
+    "boofcv-four": boofcv_four(),
     "opencv-yaml": opencv(".yml"),
     "opencv-xml": opencv(".xml"),
     "opencv-json": opencv(".json"),

@@ -18,7 +18,7 @@ import numpy as np
 
 from rectbench.calibrations.assembling import inverse, rig_of_posed, rigid, single
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
-from rectbench.calibrations.documents import Section, Source, errors_at
+from rectbench.calibrations.documents import Section, Source, errors_at, tell
 from rectbench.calibrations.formats.toolboxes.opencv import camera_matrix, opencv_camera
 from rectbench.cameras import Camera
 from rectbench.rigs.rig import Rig
@@ -27,6 +27,13 @@ from rectbench.rigs.rig import Rig
 def _read(sources: Sequence[Source], given: Given) -> Rig:
     source = single(sources)
     file = source.table(":")
+    file.knows("[SKDRT]_0?", "P?", "Tr*")  # other cameras, and where the lidar stands
+    file.knows("[SRP]_rect_0?", "R_rect")  # of the rectified images
+    found = [key for key in file.values if re.fullmatch(r"K_0\d|P\d", key)]
+    if given.cameras is None and len(found) > 2:
+        tell(
+            f"{source.path}: holds {len(found)} cameras; 0 and 1 are taken, others by `cameras=` (--cameras)"
+        )
     if "P0" in file:
         names = given.cameras or ("P0", "P1")
         return rig_of_posed([_read_rectified(file, name, given) for name in names], given, source.name)

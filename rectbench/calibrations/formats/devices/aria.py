@@ -38,16 +38,11 @@ def _read(sources: Sequence[Source], given: Given) -> Rig:
     entries = source.document.section_of_list(CAMERAS)
     sections = [entries.section(place, "a camera") for place in entries.values]
     cameras = by_name((section.text("Label", "the camera's name"), section) for section in sections)
-    ordered = dict(sorted(cameras.items(), key=lambda item: _turn(item[0])))
 
     def read(section: Section) -> PosedCamera:
         return _read_posed(section, _size(source.document, section, sections.index(section), given))
 
-    return rig_of_named(source, ordered, read, given, unit="m")
-
-
-def _turn(label: str) -> int:
-    return PAIR.index(label) if label in PAIR else len(PAIR)
+    return rig_of_named(source, cameras, read, given, "m", [PAIR])
 
 
 def _read_posed(section: Section, size: tuple[int, int]) -> PosedCamera:

@@ -12,7 +12,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from rectbench.calibrations.assembling import chosen, rig_of_posed, rigid, single
+from rectbench.calibrations.assembling import Pair, chosen, rig_of_posed, rigid, single
+from rectbench.calibrations.consistency import compare_rotations, rotation_in
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents import Section, Source, finite_number
 from rectbench.calibrations.formats.toolboxes.opencv import opencv_camera
@@ -28,14 +29,34 @@ STEREO = "stereoRectificationData"
 
 def _read(sources: Sequence[Source], given: Given) -> Rig:
     source = single(sources)
+    source.document.knows("stereoEnableDistortionCorrection", "stereoUseSpecTranslation")  # of the device
     cameras = _cameras(source.document)
-    names = chosen(_left_and_right_first(source.document, list(cameras)), given, source.path)
-    placed = [_to_last(cameras, name) for name in names]
-    if placed[0][0] != placed[1][0]:
-        first, second = (cameras[name].at("extrinsics") for name in names)
-        raise InvalidInput(f"{first} and {second} end at different cameras; expected one chain of both")
-    posed = [_read_posed(cameras[name], T, given) for name, (_, T) in zip(names, placed, strict=True)]
-    return rig_of_posed(posed, given, source.name, unit="cm")
+    pair = _rectified_pair(source.document)
+
+    def rig_of(names: Pair) -> Rig:
+        placed = [_to_last(cameras, name) for name in names]
+        if placed[0][0] != placed[1][0]:
+            first, second = (cameras[name].at("extrinsics") for name in names)
+            raise InvalidInput(f"{first} and {second} end at different cameras; expected one chain of both")
+        posed = [_read_posed(cameras[name], T, given) for name, (_, T) in zip(names, placed, strict=True)]
+        return rig_of_posed(posed, given, source.name, unit="cm")
+
+    if given.cameras is None and len(pair) == 2 and set(pair) <= cameras.keys():
+        names = (pair[0], pair[1])
+    else:
+        names = chosen(list(cameras), given, source.path, rig_of)
+    rig = rig_of(names)
+    if list(names) == pair:
+        _compare_rectification(source.document.section(STEREO, "the sockets of left and right"), rig)
+    return rig
+
+
+def _compare_rectification(stereo: Section, rig: Rig) -> None:
+    """The rotations to the rectified frame, of the pair that the file itself rectifies, hold the pose too."""
+    R1, R2 = (rotation_in(stereo, f"rectifiedRotation{side}") for side in ("Left", "Right"))
+    if R1 is not None and R2 is not None:
+        where = stereo.at("rectifiedRotationLeft")
+        compare_rotations(where, R2.T @ R1, rig.R_right_left, "the cameras' extrinsics")
 
 
 def _cameras(file: Section) -> dict[str, Section]:
@@ -57,13 +78,13 @@ def _socket(number: float) -> str:
     return f"CAM_{chr(ord('A') + int(number))}" if known else f"{number:g}"
 
 
-def _left_and_right_first(file: Section, names: list[str]) -> list[str]:
+def _rectified_pair(file: Section) -> list[str]:
+    """The sockets of the left and the right camera, as far as the file names them."""
     if STEREO not in file:
-        return names
+        return []
     stereo = file.section(STEREO, "the sockets of left and right")
     pair = [finite_number(stereo.values.get(f"{side}CameraSocket")) for side in ("left", "right")]
-    sockets = [_socket(number) for number in pair if number is not None]
-    return sorted(names, key=lambda name: sockets.index(name) if name in sockets else len(sockets))
+    return [_socket(number) for number in pair if number is not None]
 
 
 def _to_last(cameras: dict[str, Section], name: str) -> tuple[str, FloatArray]:
@@ -88,6 +109,7 @@ def _read_posed(section: Section, T: FloatArray, given: Given) -> PosedCamera:
         raise section.fault("cameraType", "0 (perspective) or 1 (fisheye)")
     lens = LENSES[int(kind)]
     size = section.sides("width", "height", given.size)
+    section.knows("specHfovDeg", "specTranslation")  # nominal, from the data sheet
     camera = opencv_camera(section, "intrinsicMatrix", "distortionCoeff", lens, size, section.where)
     return PosedCamera(section.where, camera, T)
 

@@ -58,12 +58,13 @@ def _posed(source: Source, given: Given) -> list[PosedCamera]:
         if label in cameras[-1]:
             cameras.append({})
         numbers = cameras[-1][label] = []
-    return [posed_of(_camera(source.path, place, values), given) for place, values in enumerate(cameras)]
+    return [posed_of(_camera(source, place, values), given) for place, values in enumerate(cameras)]
 
 
-def _camera(path: str, place: int, values: dict[str, list[str]]) -> Section:
+def _camera(source: Source, place: int, values: dict[str, list[str]]) -> Section:
     sides = {key: words[0] for key, words in values.items() if key.startswith("image_") and len(words) == 1}
-    return Section(path, f"camera {place + 1}: " if place else "", values | sides)
+    model = {"distortion_model": "plumb_bob"}
+    return source.section(values | sides | model, f"camera {place + 1}: " if place else "")
 
 
 def _count(source: Source) -> int:

@@ -24,10 +24,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from rectbench.calibrations.assembling import assembled, chosen, inverse, rigid, single
+from rectbench.calibrations.assembling import Pair, assembled, inverse, rigid, single
 from rectbench.calibrations.contract import Given, RigFormat
 from rectbench.calibrations.documents import Section, Source, errors_at, finite_number, shown
-from rectbench.calibrations.formats.devices.realsense_lens import pair_first, realsense_camera
+from rectbench.calibrations.formats.devices.realsense_lens import realsense_camera, stereo_pairs
+from rectbench.calibrations.named_cameras import pair_of
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig, checked_rotation
@@ -48,11 +49,13 @@ SIZE = ("Width", "Height")
 def _read(sources: Sequence[Source], given: Given) -> Rig:
     source = single(sources)
     streams = _streams(source)
-    left_name, right_name = chosen(pair_first(list(streams)), given, source.path)
-    left, right = (_camera(streams[name], name, given) for name in (left_name, right_name))
-    T = _pose(source, left_name, right_name)
-    where = f'{source.path}: Extrinsic from "{left_name}" to "{right_name}"'
-    return assembled(left, right, T, given, where, source.name, unit="m")
+
+    def rig_of(names: Pair) -> Rig:
+        left, right = (_camera(streams[name], name, given) for name in names)
+        where = f'{source.path}: Extrinsic from "{names[0]}" to "{names[1]}"'
+        return assembled(left, right, _pose(source, *names), given, where, source.name, unit="m")
+
+    return rig_of(pair_of(list(streams), stereo_pairs(streams), given, source.path, rig_of))
 
 
 def _streams(source: Source) -> dict[str, list[Section]]:

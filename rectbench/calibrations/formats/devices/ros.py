@@ -8,12 +8,14 @@ point X of the pair's frame is R X_camera = X + o. Hence
     R_right_left = R_right^T R_left,    t_right_left = R_right^T (o_right - o_left).
 
 Two files of cameras calibrated alone have P[:, 3] = 0; they want a third file with the pose.
-Translations are metres. plumb_bob, rational_polynomial and thin_prism_model are OpenCV's pinhole,
-equidistant and fisheye OpenCV's fisheye.
+What ROS' calibrator of fisheyes makes of P, `rectified_pair` says. Translations are metres. plumb_bob,
+rational_polynomial and thin_prism_model are OpenCV's pinhole, equidistant and fisheye OpenCV's fisheye, whose
+K may have a skew; camera_calibration wrote them under `camera_model` for years.
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -26,10 +28,10 @@ from rectbench.calibrations.formats.toolboxes.opencv import (
     FOCAL,
     ORDERS,
     distortion_of,
-    matrix_of,
     opencv_camera,
 )
 from rectbench.calibrations.layouts import layout_of
+from rectbench.calibrations.rectified_pair import is_turned, matrix_of
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
 from rectbench.rigs.file_formats import Writing
@@ -50,11 +52,12 @@ MODELS = {
     "equidistant": "fisheye",
     "fisheye": "fisheye",
     "kannala_brandt": "fisheye",
+    "pinhole": "pinhole",
 }
 LAYOUTS = {
     "plumb_bob": ("pinhole", (*FOCAL, *ORDERS["pinhole"][:5])),
     "rational_polynomial": ("pinhole", (*FOCAL, *ORDERS["pinhole"][:8])),
-    "equidistant": ("kannala-brandt", (*FOCAL, *ORDERS["fisheye"])),
+    "equidistant": ("kannala-brandt", (*FOCAL, *ORDERS["fisheye"], "skew")),
 }
 """The models that sensor_msgs/distortion_models names and image_geometry takes, which are written."""
 
@@ -66,31 +69,43 @@ def read_posed(source: Source, given: Given) -> PosedCamera:
 
 def posed_of(file: Section, given: Given) -> PosedCamera:
     """The same of the content of a file."""
-    lens = MODELS[file.choice("distortion_model", MODELS, "plumb_bob")]
+    lens = _read_lens(file)
     K, D = _key(file, "K"), _key(file, "D")
     width, height = ("image_width", "image_height") if "image_width" in file else ("width", "height")
     size = file.sides(width, height, given.size)
     camera = opencv_camera(file, K, D, lens, size, f"{file.at(K)}, {D}", (0, *COUNTS[lens]))
-    return PosedCamera(file.where, camera, rectified_place(file, _key(file, "R"), _key(file, "P")))
+    return rectified(PosedCamera(file.where, camera), file, _key(file, "R"), _key(file, "P"))
 
 
-def rectified_place(file: Section, R_key: str, P_key: str) -> FloatArray | None:
-    """The pose from a camera to its pair's rectified frame, or None where the camera is in no pair."""
+def _read_lens(file: Section) -> str:
+    """The lens, by `distortion_model` or by what camera_calibration called it for years, `camera_model`."""
+    key = "camera_model" if "camera_model" in file and "distortion_model" not in file else "distortion_model"
+    lens = MODELS[file.choice(key, MODELS, "plumb_bob")]
+    if "camera_model" in file and MODELS[file.choice("camera_model", MODELS)] not in (lens, "pinhole"):
+        raise file.fault("camera_model", f"a {lens}, as distortion_model says")
+    return lens
+
+
+def rectified(posed: PosedCamera, file: Section, R_key: str, P_key: str) -> PosedCamera:
+    """The camera in its pair's rectified frame; as it is where the file does not tell of one."""
     if P_key not in file or R_key not in file:
-        return None
+        return posed
     P = file.array(P_key, "the 3x4 projection matrix", (12,)).reshape(3, 4)
     R = file.array(R_key, "the 3x3 rectification matrix", (9,)).reshape(3, 3)
     if not np.any(R) or not np.any(P):  # how an uncalibrated camera is published
-        return None
+        return posed
     with errors_at(file.at(R_key)):
         R = checked_rotation(R, "it")
     focal = P[[0, 1, 2], [0, 1, 2]]
+    if is_turned(P, R, posed.camera):
+        return replace(posed, T_shared_camera=rigid(R, [0.0, 0.0, 0.0]), projection=P)
     if not (np.all(focal > 0) and focal[2] == 1):
         raise InvalidInput(
             f"{file.at(P_key)} has no focal length; expected [fx 0 cx Tx; 0 fy cy Ty; 0 0 1 0]"
         )
     with errors_at(file.at(P_key)):
-        return rigid(R, -np.linalg.solve(P[:, :3], P[:, 3]))
+        T_rect_camera = rigid(R, -np.linalg.solve(P[:, :3], P[:, 3]))
+    return replace(posed, T_shared_camera=T_rect_camera, projection=P)
 
 
 def _key(file: Section, what: str) -> str:

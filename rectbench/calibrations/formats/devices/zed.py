@@ -4,6 +4,12 @@
 millimetres and the rotation vector `RX_HD CV_HD RZ_HD`. As Stereolabs' own zed_opencv_native.py reads it,
 X_right = R X_left + (-Baseline, TY, TZ). The file holds several resolutions; the size given beside it
 chooses, and is needed unless there is one alone. Pixel (0, 0) is the centre of a pixel.
+
+Stereolabs' calibration tool for pairs of ZED X One cameras, zed-opencv-calibration, puts the coefficients,
+one lens at all resolutions, into sections `[LEFT_DISTO]` and `[RIGHT_DISTO]`: k1 k2 k3 k4 of OpenCV's
+fisheye, or k1 k2 p1 p2 k3 k4 k5 k6 of its pinhole, which go before those of a resolution. One resolution it
+spells `4k`. Beside it writes `zed_calibration_<serial>.yml`: `Size`, `K_LEFT`, `D_LEFT` or of a fisheye
+`D_LEFT_FE`, the rotation vector `R` and `T`, millimetres.
 """
 
 from __future__ import annotations
@@ -17,6 +23,8 @@ import numpy as np
 from rectbench.calibrations.assembling import assembled, camera_of, rigid, single
 from rectbench.calibrations.contract import Given, RigFormat
 from rectbench.calibrations.documents import Section, Source, one_line
+from rectbench.calibrations.formats.toolboxes.opencv import opencv_camera
+from rectbench.calibrations.pose_file import read_rotation
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig
@@ -35,6 +43,7 @@ SIZES = {
 
 FOCAL = ("fx", "fy", "cx", "cy")
 DISTORTION = ("k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6")
+FISHEYE = ("k1", "k2", "k3", "k4")
 MAX_CHARACTERS = 1 << 16
 SIDES = ("LEFT", "RIGHT")
 
@@ -43,7 +52,7 @@ def _read(sources: Sequence[Source], given: Given) -> Rig:
     source = single(sources)
     file = _parsed(source)
     resolution = _resolution(file, given)
-    left, right = (_read_camera(file, f"{side}_CAM_{resolution}", SIZES[resolution]) for side in SIDES)
+    left, right = (_read_camera(file, side, resolution) for side in SIDES)
     stereo = file.section("STEREO", "Baseline and the rotation")
     shift = [-stereo.number("baseline", "millimetres")]
     shift += [_number(stereo, axis, resolution) for axis in ("ty", "tz")]
@@ -53,7 +62,7 @@ def _read(sources: Sequence[Source], given: Given) -> Rig:
 
 
 def _parsed(source: Source) -> Section:
-    """Sections by name, each with its keys in lower case."""
+    """Sections by name, in capitals, each with its keys in lower case."""
     if len(source.text) > MAX_CHARACTERS:
         raise InvalidInput(
             f"{source.path}: is larger than {MAX_CHARACTERS >> 10} KiB; expected a ZED's .conf"
@@ -63,7 +72,10 @@ def _parsed(source: Source) -> Section:
         parser.read_string(source.text)
     except configparser.Error as error:
         raise InvalidInput(f"{source.path}: {one_line(error)[:200]}; expected a ZED's .conf") from None
-    return Section(source.path, "", {name: dict(parser[name]) for name in parser.sections()})
+    sections = {name.upper(): dict(parser[name]) for name in parser.sections()}
+    if len(sections) < len(parser.sections()):
+        raise InvalidInput(f"{source.path}: has a section twice, in capitals and not; expected each once")
+    return source.section(sections)
 
 
 def _resolution(file: Section, given: Given) -> str:
@@ -76,11 +88,29 @@ def _resolution(file: Section, given: Given) -> str:
     return fitting[0]
 
 
-def _read_camera(file: Section, name: str, size: tuple[int, int]) -> Camera:
-    section = file.section(name, "a camera")
-    names = [*FOCAL, *(name for name in DISTORTION if name in section)]
-    params = {name: section.number(name, "a number") for name in names}
-    return camera_of(section.where, "pinhole", size, params)
+def _read_camera(file: Section, side: str, resolution: str) -> Camera:
+    section = file.section(f"{side}_CAM_{resolution}", "a camera")
+    params = {name: section.number(name, "a number") for name in FOCAL}
+    if f"{side}_DISTO" in file:
+        model, coefficients = _disto(file.section(f"{side}_DISTO", "the coefficients of the lens"))
+        section.knows(*DISTORTION)
+    else:
+        model, coefficients = "pinhole", _coefficients(section, DISTORTION)
+    return camera_of(section.where, model, SIZES[resolution], params | coefficients)
+
+
+def _disto(section: Section) -> tuple[str, dict[str, float]]:
+    """The model of a lens at all resolutions, which only its coefficients tell, and these."""
+    if {"p1", "p2"} <= section.values.keys():
+        return "pinhole", _coefficients(section, DISTORTION)
+    if section.values.keys() != set(FISHEYE):
+        expected = "k1 k2 k3 k4 of a fisheye, or k1 k2 p1 p2 k3 k4 k5 k6"
+        raise InvalidInput(f"{section.where} has {' '.join(section.values)[:60]}; expected {expected}")
+    return "kannala-brandt", _coefficients(section, FISHEYE)
+
+
+def _coefficients(section: Section, names: Sequence[str]) -> dict[str, float]:
+    return {name: section.number(name, "a number") for name in names if name in section}
 
 
 def _number(stereo: Section, key: str, resolution: str) -> float:
@@ -94,4 +124,26 @@ FORMAT = RigFormat(
     "Stereolabs ZED factory calibration (.conf)",
     lambda source: "[LEFT_CAM_" in source.head,
     _read,
+)
+
+
+def _read_opencv(sources: Sequence[Source], given: Given) -> Rig:
+    file = single(sources).document
+    size = file.size("Size", given.size)
+    left, right = (_opencv_camera(file, side, size) for side in SIDES)
+    T = rigid(read_rotation(file, "R"), file.array("T", "three millimetres", (3,)))
+    return assembled(left, right, T, given, file.at("T"), sources[0].name, unit="mm")
+
+
+def _opencv_camera(file: Section, side: str, size: tuple[int, int]) -> Camera:
+    if f"D_{side}_FE" in file:
+        return opencv_camera(file, f"K_{side}", f"D_{side}_FE", "fisheye", size)
+    return opencv_camera(file, f"K_{side}", f"D_{side}", "pinhole", size)
+
+
+OPENCV_FORMAT = RigFormat(
+    "zed-opencv",
+    "Stereolabs zed-opencv-calibration's zed_calibration_<serial>.yml",
+    lambda source: {"Size", "K_LEFT", "K_RIGHT"} <= source.keys,
+    _read_opencv,
 )

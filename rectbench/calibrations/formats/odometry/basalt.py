@@ -19,6 +19,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from rectbench.calibrations.assembling import camera_of, inverse, pose_matrix, rig_of_posed, rigid, single
+from rectbench.calibrations.choosing import Pair, chosen
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents import Section, Source, shown
 from rectbench.calibrations.layouts import layout_of
@@ -68,9 +69,15 @@ QUATERNION_TOLERANCE = 1e-3
 def _read(sources: Sequence[Source], given: Given) -> Rig:
     top = single(sources).document
     content = top.section("value0", "the calibration") if "value0" in top else top
-    places = [_place(name, top.file) for name in given.cameras or ("cam0", "cam1")]
-    posed = [_read_posed(content, place, given.size) for place in places]
-    return rig_of_posed(posed, given, sources[0].name)
+
+    def rig_of(names: Pair) -> Rig:
+        places = [_place(name, top.file) for name in names]
+        posed = [_read_posed(content, place, given.size) for place in places]
+        return rig_of_posed(posed, given, sources[0].name)
+
+    cameras = [f"cam{place}" for place in content.section_of_list("intrinsics").values]
+    few = len(cameras) <= 2 or given.cameras is not None
+    return rig_of((given.cameras or ("cam0", "cam1")) if few else chosen(cameras, given, top.file, rig_of))
 
 
 def _place(name: str, file: str) -> int:

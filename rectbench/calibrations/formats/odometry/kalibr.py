@@ -21,12 +21,13 @@ from typing import Any
 import numpy as np
 
 from rectbench.calibrations.assembling import assembled, camera_of, inverse, pose_matrix, single
+from rectbench.calibrations.choosing import Pair, chosen
+from rectbench.calibrations.consistency import compare_poses
 from rectbench.calibrations.contract import Given, RigFormat
-from rectbench.calibrations.documents import Section, Source, shown
+from rectbench.calibrations.documents import Section, Source
 from rectbench.calibrations.formats.toolboxes.opencv_keys import MATRIX
 from rectbench.calibrations.layouts import layout_of
 from rectbench.cameras import Camera
-from rectbench.errors import InvalidInput
 from rectbench.rigs.file_formats import Writing
 from rectbench.rigs.rig import Rig
 from rectbench.types import FloatArray
@@ -79,21 +80,27 @@ def _recognises(source: Source) -> bool:
 
 
 def _is_chain(source: Source) -> bool:
-    """Whether a file has cameras by Kalibr's names; one with a matrix is a calibration of OpenCV's."""
+    """Whether a file has cameras by Kalibr's names; some with other keys are OpenCV's or AirSLAM's."""
     cameras = [source.document.values[key] for key in source.keys if CAMERA.fullmatch(key)]
-    return any(not (isinstance(camera, dict) and camera.keys() & set(MATRIX)) for camera in cameras)
+    others = {*MATRIX, "T_type"}
+    return any(not (isinstance(camera, dict) and camera.keys() & others) for camera in cameras)
 
 
 def _read(sources: Sequence[Source], given: Given) -> Rig:
-    """The rig of cam0 (left) and cam1 (right), or of the two asked for; others are left out."""
+    """The rig of cam0 (left) and cam1 (right), or of the two asked for."""
     source = _chain(sources)
     chain = source.document
-    names = _chosen(chain, given)
-    expected = ("the first camera, the left one", "the second camera; a rig takes two")
-    sections = [chain.section(name, what) for name, what in zip(names, expected, strict=True)]
-    left, right = (_read_camera(section, given.size) for section in sections)
-    key, T = _read_pose(chain, *names)
-    return assembled(left, right, T, given, key, source.name)
+
+    def rig_of(names: Pair) -> Rig:
+        expected = ("the first camera, the left one", "the second camera; a rig takes two")
+        sections = [chain.section(name, what) for name, what in zip(names, expected, strict=True)]
+        left, right = (_read_camera(section, given.size) for section in sections)
+        key, T = _read_pose(chain, *names)
+        return assembled(left, right, T, given, key, source.name)
+
+    cameras = [key for key in chain.values if CAMERA.fullmatch(key)]
+    few = len(cameras) <= 2 and not given.cameras
+    return rig_of(("cam0", "cam1") if few else chosen(cameras, given, chain.file, rig_of))
 
 
 def _chain(sources: Sequence[Source]) -> Source:
@@ -104,15 +111,6 @@ def _chain(sources: Sequence[Source]) -> Source:
         config = single(configs)
         return config.beside(config.document.text(CONFIG, "the name of the cameras' file"))
     return single(chains if configs else sources)
-
-
-def _chosen(chain: Section, given: Given) -> tuple[str, str]:
-    names = given.cameras or ("cam0", "cam1")
-    for name in names:
-        if given.cameras and (name not in chain or not CAMERA.fullmatch(name)):
-            known = ", ".join(key for key in chain.values if CAMERA.fullmatch(key))
-            raise InvalidInput(f"{chain.file}: has no camera {shown(name)}; expected two of {known}")
-    return names
 
 
 def _read_pose(chain: Section, left: str, right: str) -> tuple[str, FloatArray]:
@@ -128,7 +126,11 @@ def _read_pose(chain: Section, left: str, right: str) -> tuple[str, FloatArray]:
     T = np.eye(4)
     for link in links:
         T = link.rigid("T_cn_cnm1", "the pose from the camera before to this one, metres") @ T
-    return chain.at(f"{last}.T_cn_cnm1"), T if first == left else inverse(T)
+    T = T if first == left else inverse(T)
+    if all(key in end for key in IMU_KEYS[:1] for end in ends):
+        T_left_imu, T_right_imu = (_from_imu(end) for end in ends)
+        compare_poses(f"{chain.at(right)}.T_cam_imu", T_right_imu @ inverse(T_left_imu), T, "T_cn_cnm1")
+    return chain.at(f"{last}.T_cn_cnm1"), T
 
 
 def _from_imu(camera: Section) -> FloatArray:

@@ -8,17 +8,14 @@ of a pixel.
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Sequence
 from typing import Any
 
 from rectbench.calibrations.assembling import camera_of, inverse, rig_of_posed, single
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
-from rectbench.calibrations.documents import Section, Source
+from rectbench.calibrations.documents import Section, Source, tell
 from rectbench.calibrations.formats.odometry.kalibr import LAYOUTS, OTHERS_LAYOUTS, RADTAN
 from rectbench.rigs.rig import Rig
-
-log = logging.getLogger("rectbench.calibrations")
 
 SIDES = ("left", "right")
 KEYS = ("camera_model", "distortion_model", "intrinsics", "distortion_coeffs", "resolution", "T")
@@ -30,9 +27,9 @@ def _read(sources: Sequence[Source], given: Given) -> Rig:
     source = single(sources)
     file = source.document
     posed = [_read_posed(file.section(side, "a camera"), given) for side in SIDES]
-    log.warning(
-        "%s.T: taken to take points of the frame that both share to the camera, as Kalibr's T_cn_cnm1 does",
-        file.at("right"),
+    tell(
+        f"{file.at('right')}.T: taken to take points of the frame that both share to the camera, as Kalibr's "
+        "T_cn_cnm1 does"
     )
     return rig_of_posed(posed, given, source.name)
 

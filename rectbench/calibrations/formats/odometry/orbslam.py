@@ -5,7 +5,8 @@ and `Stereo.T_c1_c2` (older: `Tlr`), which takes points of the right camera to t
 Rectified images have Camera1 alone, and the baseline `Stereo.b`; in ORB-SLAM2's settings, Camera and
 `Camera.bf`, the baseline times fx. A `DepthMapFactor` marks the settings of an RGB-D camera, of no rig.
 ORB-SLAM2: `LEFT.K`, `LEFT.D`, `LEFT.R`, `LEFT.P` and `RIGHT.*`, as `cv2.stereoRectify` gives them; P[0, 3] of
-RIGHT is -fx' B, see `formats.devices.ros`. Four coefficients in LEFT.D are still the pinhole's.
+RIGHT is -fx' B, see `formats.devices.ros`. Four coefficients in LEFT.D are still the pinhole's; of a fisheye
+they are in AirVO's files, which are the same but for `distortion_type: 1`.
 """
 
 from __future__ import annotations
@@ -20,9 +21,10 @@ from rectbench.calibrations.assembling import (
     side_by_side,
     single,
 )
+from rectbench.calibrations.consistency import compare_numbers
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents import Section, Source
-from rectbench.calibrations.formats.devices.ros import rectified_place
+from rectbench.calibrations.formats.devices.ros import rectified
 from rectbench.calibrations.formats.toolboxes.opencv import opencv_camera
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
@@ -49,7 +51,18 @@ def _read(sources: Sequence[Source], given: Given) -> Rig:
     if "LEFT.K" not in file and "RIGHT.K" not in file:
         return _read_side_by_side(file, given, sources[0].name)
     posed = [_read_rectified(file, side, given) for side in ("LEFT", "RIGHT")]
-    return rig_of_posed(posed, given, sources[0].name)
+    rig = rig_of_posed(posed, given, sources[0].name)
+    _compare_rectified(file, rig)
+    return rig
+
+
+def _compare_rectified(file: Section, rig: Rig) -> None:
+    """`Camera` is the rectified one of LEFT.P, and `Camera.bf` its focal length times the baseline."""
+    P = file.array("LEFT.P", "the 3x4 projection matrix", (12,))
+    for key, place in (("fx", 0), ("fy", 5), ("cx", 2), ("cy", 6)):
+        compare_numbers(file, f"Camera.{key}", float(P[place]), "LEFT.P")
+    for key in ("Camera.bf", "bf"):
+        compare_numbers(file, key, float(P[0]) * rig.baseline_m, "LEFT.P and RIGHT.P")
 
 
 def _read_side_by_side(file: Section, given: Given, name: str) -> Rig:
@@ -85,12 +98,24 @@ def _read_camera(file: Section, camera: str, given: Given) -> Camera:
 
 
 def _read_rectified(file: Section, side: str, given: Given) -> PosedCamera:
-    size = file.sides(f"{side}.width", f"{side}.height", given.size)
-    camera = opencv_camera(file, f"{side}.K", f"{side}.D", "pinhole", size)
-    T = rectified_place(file, f"{side}.R", f"{side}.P")
-    if T is None:
+    prefix = f"{side}." if f"{side}.width" in file or "image_width" not in file else "image_"
+    size = file.sides(f"{prefix}width", f"{prefix}height", given.size)
+    lens = _rectified_lens(file)
+    camera = opencv_camera(file, f"{side}.K", f"{side}.D", lens, size)
+    posed = rectified(PosedCamera(file.at(f"{side}.R"), camera), file, f"{side}.R", f"{side}.P")
+    if posed.T_shared_camera is None:
         raise InvalidInput(f"{file.at(side)}.R or {side}.P is missing; expected cv2.stereoRectify's R and P")
-    return PosedCamera(file.at(f"{side}.R"), camera, T)
+    return posed
+
+
+def _rectified_lens(file: Section) -> str:
+    """AirVO's `distortion_type` makes a fisheye of what is ORB-SLAM2's pinhole else."""
+    if "distortion_type" not in file:
+        return "pinhole"
+    kind = file.number("distortion_type", "0 (pinhole) or 1 (fisheye)")
+    if kind not in (0, 1):
+        raise file.fault("distortion_type", "0 (pinhole) or 1 (fisheye)")
+    return "fisheye" if kind else "pinhole"
 
 
 def _recognises(source: Source) -> bool:

@@ -32,6 +32,7 @@ def _read(sources: Sequence[Source], given: Given) -> Rig:
         raise rectified.fault("fx", "pixels above 0")
     if "StereoRectifier" not in file:
         return _rectified(rectified, size, shift / focal, given, sources[0].name)
+    rectified.knows("model")  # of the rectified images
     rectifier = file.section("StereoRectifier", "K, D and R of both cameras")
     left = _read_posed(rectifier, "left", size, 0.0)
     right = _read_posed(rectifier, "right", size, shift / focal)

@@ -19,8 +19,7 @@ the versions:
 | fisheye or fisheye4, fisheye1 | kannala-brandt, field-of-view |
 
 Equidistant cameras, whose radius AliceVision's versions take differently, panoramas and 3DEqualizer's
-undistortions are refused. The views' images are the cameras' names; the first two with poses are left and
-right, unless others are asked for.
+undistortions are refused. The cameras are the views with poses, and go by their images' names.
 """
 
 from __future__ import annotations
@@ -116,6 +115,7 @@ def _views(file: Section) -> list[tuple[str, _View]]:
     found = []
     for number, view in _by_number(file, "views", "viewId").items():
         refuse_unread(view, VIEW_KEYS)
+        view.knows(*VIEW_KEYS)
         pose = poses.get(_number(view, "poseId"))
         if pose is None:
             continue
@@ -148,8 +148,9 @@ def _transform(section: Section) -> FloatArray:
 
 def _camera(section: Section, version: Version, given: Given) -> Camera:
     refuse_unread(section, INTRINSIC_KEYS)
+    section.knows(*INTRINSIC_KEYS)
     kind = section.choice("type", TYPES)
-    distortion = section.choice("distortionType", DISTORTIONS, TYPES[kind])
+    distortion = section.choice("distortionType", DISTORTIONS) if "distortionType" in section else TYPES[kind]
     if distortion != TYPES[kind] and kind != "pinhole":
         raise section.fault("distortionType", f"{TYPES[kind]}, as the type {kind} has it")
     if section.values.get("undistortionType", "none") != "none" or section.values.get("undistortionParams"):

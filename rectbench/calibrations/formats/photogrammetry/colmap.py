@@ -35,7 +35,7 @@ from scipy.spatial.transform import Rotation
 
 from rectbench.calibrations.assembling import camera_of, inverse, pose_matrix, rigid
 from rectbench.calibrations.contract import UNITS, Given, RigFormat
-from rectbench.calibrations.documents import Source, agreed_size, errors_at, one_line, shown
+from rectbench.calibrations.documents import Source, agreed_size, errors_at, one_line, shown, tell
 from rectbench.calibrations.formats.photogrammetry.colmap_files import (
     CameraRecord,
     ImageRecord,
@@ -146,12 +146,19 @@ def _pair(cameras_file: Path) -> tuple[_PlacedCamera, _PlacedCamera]:
         for sensors in read_rigs(rigs_file):
             posed = [sensor for sensor in sensors if sensor.pose is not None]
             if len(posed) > 1:
+                _tell_more(rigs_file, len(posed), "cameras of its rig")
                 return _of_sensor(posed[0]), _of_sensor(posed[1])
     images_file = _beside(cameras_file, "images")
-    first = list(islice(read_images(images_file), 2))
+    first = list(islice(read_images(images_file), 3))
     if len(first) < 2:
         raise InvalidInput(f"{images_file}: holds {len(first)} images; expected two at least")
+    _tell_more(images_file, len(first), f"images, {one_line(first[0].name)} and {one_line(first[1].name)}")
     return _of_image(first[0]), _of_image(first[1])
+
+
+def _tell_more(file: Path, count: int, what: str) -> None:
+    if count > 2:
+        tell(f"{file}: the first two {what} are taken; others by `cameras=` (--cameras LEFT,RIGHT)")
 
 
 def _images_named(cameras_file: Path, names: Sequence[str]) -> tuple[_PlacedCamera, _PlacedCamera]:

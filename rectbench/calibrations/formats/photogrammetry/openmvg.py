@@ -10,8 +10,7 @@ later the number alone. Pixel (0, 0) is the centre of a pixel, as the images are
 | pinhole, pinhole_radial_k1, pinhole_radial_k3, pinhole_brown_t2 (k1 k2 k3 t1 t2) | pinhole |
 | fisheye | kannala-brandt |
 
-Spherical images are refused. The views' images are the cameras' names; the first two that have poses are
-left and right, unless others are asked for.
+Spherical images are refused. The cameras are the views that have poses, and go by their images' names.
 """
 
 from __future__ import annotations
@@ -23,6 +22,7 @@ from typing import Any
 from rectbench.calibrations.assembling import camera_of, rigid, single
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents import Section, Source
+from rectbench.calibrations.documents.entries import take
 from rectbench.calibrations.named_cameras import by_name, rig_of_named, told_scale
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
@@ -104,6 +104,7 @@ def _data(entry: Section) -> Section:
     """The object of an entry, with the keys of its bases among its own."""
     wrapper = entry.section("value", "an object").section("ptr_wrapper", "a pointer")
     data = wrapper.section("data", "an object")
+    take(data.values)  # as all of its keys are looked at
     return Section(data.file, data.key, _flat(data.values))
 
 
@@ -111,7 +112,7 @@ def _flat(values: Any) -> dict[str, Any]:
     flat: dict[str, Any] = {}
     for key, value in values.items():
         is_base = key.startswith(BASE) and key[len(BASE) :].isdigit() and isinstance(value, dict)
-        flat |= _flat(value) if is_base else {key: value}
+        flat |= _flat(values[key]) if is_base else {key: value}
     return flat
 
 

@@ -12,19 +12,17 @@ Translations are divided by `applied_scale`; their scale is arbitrary, which is 
 | OPENCV_FISHEYE, or `is_fisheye`: k1 k2 k3 k4 | kannala-brandt |
 | `ftheta_p0` ... `ftheta_p4`, the angle by powers of the pixels | f-theta |
 
-The frames' images are the cameras' names, or the last part of one; the first two are left and right, unless
-others are asked for.
+The frames' images are the cameras' names, or the last part of one.
 """
 
 from __future__ import annotations
 
-import logging
 import math
 from collections.abc import Sequence
 
 from rectbench.calibrations.assembling import camera_of, single
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
-from rectbench.calibrations.documents import Section, Source, shown
+from rectbench.calibrations.documents import Section, Source, shown, tell
 from rectbench.calibrations.named_cameras import (
     Y_UP_Z_BACK,
     by_name,
@@ -35,8 +33,6 @@ from rectbench.calibrations.named_cameras import (
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig
-
-log = logging.getLogger("rectbench.calibrations")
 
 PERSPECTIVE = ("SIMPLE_PINHOLE", "PINHOLE", "SIMPLE_RADIAL", "RADIAL", "OPENCV")
 MODELS = (*PERSPECTIVE, "OPENCV_FISHEYE")
@@ -89,6 +85,7 @@ def _lens(file: Section, frame: Section) -> Section:
     """The keys of the frame's lens, its own and the file's, which may not disagree."""
     for section in (file, frame):
         refuse_unread(section, (*LENS, *OTHER_KEYS))
+        section.knows(*LENS, *OTHER_KEYS)
     values = {key: file.values[key] for key in LENS if key in file}
     for key in LENS:
         if key in frame and values.setdefault(key, frame.values[key]) != frame.values[key]:
@@ -128,7 +125,7 @@ def _angle_poly(lens: Section) -> list[float]:
 
 
 def _model(lens: Section) -> str:
-    name = lens.choice("camera_model", MODELS, "")
+    name = lens.choice("camera_model", MODELS) if "camera_model" in lens else ""
     is_fisheye = lens.values.get("is_fisheye", name == "OPENCV_FISHEYE")
     if not isinstance(is_fisheye, bool) or (name and is_fisheye != (name == "OPENCV_FISHEYE")):
         raise lens.fault("is_fisheye", f"true or false, as camera_model {shown(name)} has it")
@@ -145,11 +142,9 @@ def _focal(lens: Section, axis: str, side: int) -> float | None:
         raise lens.fault(f"camera_angle_{axis}", "a field of view below 180°, radians")
     seen = None if angle is None else 0.5 * side / math.tan(0.5 * angle)
     if stated is not None and seen is not None and abs(seen - stated) > AGREEMENT * abs(stated):
-        log.warning(
-            "%s is %.6g px, where the field of view makes it %.6g px; the former counts",
-            lens.at(f"fl_{axis}"),
-            stated,
-            seen,
+        tell(
+            f"{lens.at(f'fl_{axis}')} is {stated:.6g} px, where the field of view makes it {seen:.6g} px; "
+            "the former counts"
         )
     return seen if stated is None else stated
 

@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from rectbench.calibrations.assembling import chosen, inverse, rig_of_posed, rigid, single
+from rectbench.calibrations.assembling import Pair, chosen, inverse, rig_of_posed, rigid, single
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents import Section, Source
 from rectbench.calibrations.formats.toolboxes.opencv import opencv_camera
@@ -29,8 +29,11 @@ def _read(sources: Sequence[Source], given: Given) -> Rig:
     cameras = {name: tables.section(name, "a camera") for name in _tables(tables.values)}
     if given.cameras and not set(given.cameras) <= cameras.keys():
         cameras = {str(camera.values.get("name", name)): camera for name, camera in cameras.items()}
-    names = chosen(list(cameras), given, source.path)
-    return rig_of_posed([_read_posed(cameras[name], given) for name in names], given, source.name)
+
+    def rig_of(names: Pair) -> Rig:
+        return rig_of_posed([_read_posed(cameras[name], given) for name in names], given, source.name)
+
+    return rig_of(chosen(list(cameras), given, source.path, rig_of))
 
 
 def _tables(values: Mapping[str, Any]) -> list[str]:

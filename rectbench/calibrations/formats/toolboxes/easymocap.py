@@ -9,7 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from rectbench.calibrations.assembling import chosen, inverse, rig_of_posed, rigid
+from rectbench.calibrations.assembling import Pair, chosen, inverse, rig_of_posed, rigid
+from rectbench.calibrations.consistency import compare_rotations
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents import Section, Source
 from rectbench.calibrations.formats.toolboxes.opencv import opencv_camera
@@ -30,9 +31,17 @@ def _read(sources: Sequence[Source], given: Given) -> Rig:
     if len(files) == 1:
         files += [first.beside(name) for start, name in FILES.items() if not _has(first, start)]
     intrinsics, extrinsics = (_holder(files, start) for start in FILES)
-    names = chosen(_names(intrinsics), given, intrinsics.path)
-    posed = [_read_posed(intrinsics.document, extrinsics.document, name, given) for name in names]
-    return rig_of_posed(posed, given, first.name)
+    known = _names(intrinsics)
+
+    def rig_of(names: Pair) -> Rig:
+        posed = [_read_posed(intrinsics.document, extrinsics.document, name, given) for name in names]
+        return rig_of_posed(posed, given, first.name)
+
+    names = chosen(known, given, intrinsics.path, rig_of)
+    for other in set(known) - set(names):
+        intrinsics.document.knows(f"K_{other}", f"dist_{other}", f"D_{other}")
+        extrinsics.document.knows(f"R_{other}", f"Rot_{other}", f"T_{other}")
+    return rig_of(names)
 
 
 def _holder(sources: Sequence[Source], start: str) -> Source:
@@ -59,6 +68,9 @@ def _read_posed(intrinsics: Section, extrinsics: Section, name: str, given: Give
     size = intrinsics.sides(f"W_{name}", f"H_{name}", given.size)
     camera = opencv_camera(intrinsics, f"K_{name}", key, "pinhole", size)
     R = read_rotation(extrinsics, f"Rot_{name}" if f"Rot_{name}" in extrinsics else f"R_{name}")
+    if f"R_{name}" in extrinsics:
+        again = read_rotation(extrinsics, f"R_{name}")
+        compare_rotations(extrinsics.at(f"R_{name}"), again, R, f"Rot_{name}")
     t = extrinsics.array(f"T_{name}", "three metres", (3,))
     return PosedCamera(extrinsics.at(f"T_{name}"), camera, inverse(rigid(R, t)))
 

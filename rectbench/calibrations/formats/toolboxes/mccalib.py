@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from rectbench.calibrations.assembling import chosen, rig_of_posed, single
+from rectbench.calibrations.assembling import Pair, chosen, rig_of_posed, single
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents import Section, Source
 from rectbench.calibrations.formats.toolboxes.opencv import opencv_camera
@@ -24,13 +24,16 @@ def _read(sources: Sequence[Source], given: Given) -> Rig:
     source = single(sources)
     file = source.document
     cameras = [name for name in file.values if re.fullmatch(r"camera_\d{1,3}", name)]
-    sections = [file.section(name, "a camera") for name in chosen(cameras, given, source.path)]
-    groups = [section.values.get("camera_group") for section in sections]
-    if groups[0] != groups[1]:
-        raise InvalidInput(
-            f"{sections[1].at('camera_group')} is not that of the other camera; expected one group of both"
-        )
-    return rig_of_posed([_read_posed(section, given) for section in sections], given, source.name)
+
+    def rig_of(names: Pair) -> Rig:
+        sections = [file.section(name, "a camera") for name in names]
+        groups = [section.values.get("camera_group") for section in sections]
+        if groups[0] != groups[1]:
+            where = sections[1].at("camera_group")
+            raise InvalidInput(f"{where} is not that of the other camera; expected one group of both")
+        return rig_of_posed([_read_posed(section, given) for section in sections], given, source.name)
+
+    return rig_of(chosen(cameras, given, source.path, rig_of))
 
 
 def _read_posed(section: Section, given: Given) -> PosedCamera:

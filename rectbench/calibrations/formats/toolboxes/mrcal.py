@@ -78,7 +78,7 @@ RECOGNISED = re.compile(
 
 def read_posed(source: Source, given: Given) -> PosedCamera:
     """The camera in the file, standing in mrcal's reference frame."""
-    file = Section(source.path, "", parse(_text(source), source.path))
+    file = source.section(parse(_text(source), source.path))
     key = next((key for key in LENS_KEYS if key in file), LENS_KEYS[0])
     model, names = _model(file, key)
     params = file.named("intrinsics", names)

@@ -10,13 +10,12 @@ in the unit of the boards. Pixel (0, 0) is the centre of a pixel.
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Sequence
 from functools import partial
 
 from rectbench.calibrations.assembling import inverse, rigid, single
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
-from rectbench.calibrations.documents import Section, Source
+from rectbench.calibrations.documents import Section, Source, tell
 from rectbench.calibrations.documents.numbers import flat_numbers
 from rectbench.calibrations.formats.toolboxes.opencv import opencv_camera
 from rectbench.calibrations.named_cameras import rig_of_named
@@ -32,8 +31,6 @@ POSES = "camera_poses"
 LINK = "_to_"
 FEWEST = 4
 """Coefficients of a fisheye; `calibrateCamera` gives five or more."""
-
-log = logging.getLogger("rectbench.calibrations")
 
 
 def _read(sources: Sequence[Source], given: Given) -> Rig:
@@ -77,7 +74,7 @@ def _lens(section: Section) -> str:
         return "fisheye"
     is_fisheye = model == "standard" and len(flat_numbers(section.values.get("dist")) or ()) == FEWEST
     if is_fisheye:
-        log.warning("%s: four coefficients, taken for those of MultiCal's fisheye", section.at("dist"))
+        tell(f"{section.at('dist')}: four coefficients, taken for those of MultiCal's fisheye")
     return "fisheye" if is_fisheye else "pinhole"
 
 

@@ -27,7 +27,6 @@ xi_1 xi_2.
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Collection, Sequence
 from pathlib import Path
 from typing import Any
@@ -36,8 +35,10 @@ import cv2
 import numpy as np
 
 from rectbench.calibrations.assembling import assembled, camera_of, rigid
+from rectbench.calibrations.consistency import compare_lengths, compare_rotations, rotation_in
 from rectbench.calibrations.contract import Given, RigFormat
-from rectbench.calibrations.documents import Section, Source, agreed_size, shown
+from rectbench.calibrations.documents import Section, Source, agreed_size, shown, tell
+from rectbench.calibrations.documents.numbers import flat_numbers
 from rectbench.calibrations.formats.toolboxes.opencv_keys import (
     DISTORTION,
     FLAGS,
@@ -58,29 +59,31 @@ from rectbench.calibrations.formats.toolboxes.opencv_keys import (
     parts_of,
 )
 from rectbench.calibrations.layouts import layout_of
+from rectbench.calibrations.rectified_pair import matrix_of
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
 from rectbench.rigs.file_formats import Writing
 from rectbench.rigs.rig import Rig
 from rectbench.types import FloatArray
 
-log = logging.getLogger("rectbench.calibrations")
-
 YES_OR_NO = {"0": False, "0.0": False, "false": False, "1": True, "1.0": True, "true": True}
 
 FOCAL = ("fx", "fy", "cx", "cy")
 CAMERA_MODELS = {"pinhole": "pinhole", "fisheye": "kannala-brandt", "omnidir": "unified"}
+TILT = ("tau_x", "tau_y")
+"""The last two of a pinhole's 14 coefficients, which turn its sensor."""
+
 PINHOLE_ORDER = ("k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6", "s1", "s2", "s3", "s4")
 ORDERS = {"pinhole": PINHOLE_ORDER, "fisheye": ("k1", "k2", "k3", "k4"), "omnidir": ("k1", "k2", "p1", "p2")}
 LAYOUTS = {
     lens: (model, (*FOCAL, *ORDERS[lens], *(() if lens == "pinhole" else ("skew", "xi"))))
     for lens, model in CAMERA_MODELS.items()
-}
+} | {"tilted": ("tilted-pinhole", (*FOCAL, *PINHOLE_ORDER, *TILT))}
 """What OpenCV's three modules have places for."""
 
 SUFFIXES = (".yml", ".yaml", ".xml", ".json")
 PINHOLE_COUNTS = (4, 5, 8, 12, 14)
-"""Lengths of OpenCV's distortion vector; the last two of 14 tilt the sensor."""
+"""Lengths of OpenCV's distortion vector."""
 
 COUNTS = {"pinhole": PINHOLE_COUNTS, "fisheye": (4,), "omnidir": (4,)}
 
@@ -120,13 +123,10 @@ def lens_parameters(file: Section, key: str, lens: str, counts: Collection[int])
     filled = PINHOLE_COUNTS if lens == "fisheye" else ()
     distortion = file.array(key, expected, {*counts, *filled}).tolist()
     order = ORDERS[lens]
-    if any(distortion[len(order) :]) and lens == "fisheye":
+    beyond = distortion[len(order) :]
+    if any(beyond) and lens == "fisheye":
         raise file.fault(key, expected)
-    if any(distortion[len(order) :]):
-        raise InvalidInput(
-            f"{file.at(key)} tilts the sensor (tau); expected its last two of 14 coefficients 0"
-        )
-    return dict(zip(order, distortion, strict=False))
+    return dict(zip((*order, *TILT) if any(beyond) else order, distortion, strict=False))
 
 
 def opencv_camera(
@@ -141,14 +141,32 @@ def opencv_camera(
     """The camera of OpenCV's matrix and distortion under these keys; `counts` are the latter's lengths."""
     params = camera_matrix(file, matrix, lens)
     params |= lens_parameters(file, distortion, lens, counts or COUNTS[lens])
-    return camera_of(where or file.at(matrix), CAMERA_MODELS[lens], size, params)
+    return camera_of(where or file.at(matrix), model_of(lens, params), size, params)
+
+
+def model_of(lens: str, params: Collection[str]) -> str:
+    """The projection model of OpenCV's lens with these parameters."""
+    return "tilted-pinhole" if set(TILT) & set(params) else CAMERA_MODELS[lens]
 
 
 def _read(sources: Sequence[Source], given: Given) -> Rig:
     files = Files([part for source in sources for part in parts_of(source.document)])
     left, right = (_read_camera(files, number, given.size) for number in (1, 2))
     where, T = _read_pose(files)
+    _compare_rectification(files, T)
     return assembled(left, right, T, given, f"{files}: {where}", sources[0].name)
+
+
+def _compare_rectification(files: Files, T: FloatArray) -> None:
+    """R1 and R2 of `stereoRectify` hold the rotation too, and P2 the length of the translation."""
+    for document in files.documents:
+        document.knows("P1", "Q")
+        R1, R2 = (rotation_in(document, key) for key in ("R1", "R2"))
+        if R1 is not None and R2 is not None:
+            compare_rotations(document.at("R1"), R2.T @ R1, T[:3, :3], "R")
+        P2 = flat_numbers(document.values.get("P2"))
+        if P2 is not None and len(P2) == 12 and P2[0] > 0 and P2[3] != 0:
+            compare_lengths(f"{document.at('P2')}[0, 3] / P2[0, 0]", abs(P2[3] / P2[0]), T[:3, 3], "T")
 
 
 def _read_pose(files: Files) -> tuple[str, FloatArray]:
@@ -179,7 +197,7 @@ def _read_camera(files: Files, number: int, size: tuple[int, int] | None) -> Cam
         holder, xi_key = xi or files.first(XI, number, "Mei's xi, a number")
         params["xi"] = float(holder.array(xi_key, "Mei's xi, a number", (1,))[0])
     image = _read_size(files, number, size)
-    return camera_of(f"{document.at(key)}, {name}", CAMERA_MODELS[lens], image, params)
+    return camera_of(f"{document.at(key)}, {name}", model_of(lens, params), image, params)
 
 
 def _check_pinhole(where: str, coefficients: dict[str, float]) -> None:
@@ -188,7 +206,7 @@ def _check_pinhole(where: str, coefficients: dict[str, float]) -> None:
     if max(abs(coefficients["p1"]), abs(coefficients["p2"])) > LARGEST_TANGENTIAL:
         found = shown(list(coefficients.values()))
         raise InvalidInput(f"{where} is {found}, more of a fisheye's than a pinhole's; expected {remedy}")
-    log.warning("%s: taken for a pinhole's k1 k2 p1 p2; a word on the lens would be %s", where, remedy)
+    tell(f"{where}: taken for a pinhole's k1 k2 p1 p2; a word on the lens would be {remedy}")
 
 
 def _read_lens(files: Files, number: int) -> str | None:
@@ -244,7 +262,7 @@ def _texts(rig: Rig, name: str) -> dict[str, str]:
 
 
 def _write_camera(storage: Any, number: int, lens: str, camera: Camera) -> None:
-    storage.write(f"model_{number}", lens)
+    storage.write(f"model_{number}", "pinhole" if lens == "tilted" else lens)
     storage.write(f"imageSize_{number}", np.array([camera.size]))
     storage.write(f"K{number}", matrix_of(camera))
     storage.write(f"D{number}", np.array([distortion_of(camera, lens)]))
@@ -252,14 +270,10 @@ def _write_camera(storage: Any, number: int, lens: str, camera: Camera) -> None:
         storage.write(f"xi_{number}", camera.params["xi"])
 
 
-def matrix_of(camera: Camera) -> FloatArray:
-    """The camera matrix [3, 3], with the skew where the camera has one."""
-    p = camera.params
-    return np.array([[p["fx"], p.get("skew", 0.0), p["cx"]], [0.0, p["fy"], p["cy"]], [0.0, 0.0, 1.0]])
-
-
 def distortion_of(camera: Camera, lens: str) -> list[float]:
     """The coefficients in OpenCV's order, of a pinhole as many of 5, 8 or 12 as it takes."""
+    if lens == "tilted":
+        return [camera.params[name] for name in (*PINHOLE_ORDER, *TILT)]
     coefficients = [camera.params[name] for name in ORDERS[lens]]
     return coefficients[: next(n for n in (5, 8, 12) if not any(coefficients[n:]))]
 

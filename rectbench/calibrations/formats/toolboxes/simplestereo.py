@@ -29,6 +29,7 @@ def _read(sources: Sequence[Source], given: Given) -> Rig:
     source = single(sources)
     file = source.document
     file.only((*(f"{key}{number}" for number in (1, 2) for key in CAMERA_KEYS), "R", "T", *DERIVED))
+    file.knows(*DERIVED)
     left, right = (_read_camera(file, number, given) for number in (1, 2))
     t = file.array("T", "a translation", (3,))
     where = file.at("T")

@@ -4,8 +4,7 @@ Properties are words: `Model` ftheta, `width`, `height`, `cx`, `cy`, and `bw-pol
 `polynomial-type`, and `linear-c`, `-d`, `-e`. (0.5, 0.5) is the centre of the top-left pixel, as
 DriveWorks' rays go through pixel + 0.5 - cx. `roll-pitch-yaw`, degrees about the fixed x, y and z, and `t`,
 metres, take points of the sensor, x forward, y left, z up, to the rig; `correction_sensor_R_FLU` is turned
-by before that, and `correction_rig_T` is added to t. Cameras go by their names; the first two are left and
-right, unless others are asked for.
+by before that, and `correction_rig_T` is added to t. Cameras go by their names.
 """
 
 from __future__ import annotations
@@ -41,6 +40,9 @@ def _read(sources: Sequence[Source], given: Given) -> Rig:
     rig = source.document.section("rig", "the rig's sensors")
     entries = rig.section_of_list("sensors")
     sensors = [entries.section(place, "a sensor") for place in entries.values]
+    for sensor in sensors:
+        if not _is_camera(sensor):
+            sensor.knows("*")
     cameras = by_name(
         (sensor.text("name", "the sensor's name"), sensor) for sensor in sensors if _is_camera(sensor)
     )
@@ -67,6 +69,7 @@ def _read_posed(sensor: Section, given: Given) -> PosedCamera:
         for name, default in LINEAR.items()
     ]
     poly = _words(properties, key)
+    properties.knows(*known)  # the other one is a fit to it
     camera = f_theta_camera(properties.where, size, centre, poly, by_distance, linear)
     return PosedCamera(sensor.where, camera, _pose(sensor))
 

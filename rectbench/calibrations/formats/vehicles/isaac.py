@@ -47,6 +47,7 @@ def read_posed(source: Source, given: Given) -> PosedCamera:
     """The camera in the file, posed in the scene, metres."""
     file = source.document
     refuse_unread(file, KEYS)
+    file.knows(*KEYS)
     size = agreed_size(file.at(RESOLUTION), file.numbers(RESOLUTION, "[width, height]", 2), given.size)
     kind = file.choice("cameraModel", ("pinhole", "fisheyePolynomial"))
     camera = _pinhole(file, size) if kind == "pinhole" else _fisheye(file, size)

@@ -4,8 +4,7 @@ A camera has `T_sensor_rig`, which takes its points (x right, y down, z forward)
 `camera_model` of type ftheta: `reference_poly` says which of `pixeldist_to_angle_poly` and
 `angle_to_pixeldist_poly` the lens is, `linear_cde` how the sensor is stretched, `max_angle` where the image
 ends, radians. Pixel (0, 0) is the centre of a pixel, which 3DGUT's FThetaCameraModel says of these
-parameters. Cameras go by their `logical_sensor_name`; the first two are left and right, unless others are
-asked for. A rolling shutter is left out.
+parameters. Cameras go by their `logical_sensor_name`. A rolling shutter is left out.
 """
 
 from __future__ import annotations
@@ -49,6 +48,7 @@ def _read_posed(section: Section, given: Given) -> PosedCamera:
     model.choice("type", ("ftheta",))
     lens = model.section("parameters", "those of an f-theta camera")
     lens.only(KEYS)
+    lens.knows(*(key for key, _ in POLYNOMIALS.values()))  # the other one is a fit to the reference
     if lens.values.get("external_distortion_parameters"):
         raise lens.fault("external_distortion_parameters", "none, as a windscreen's are no lens here")
     key, by_distance = POLYNOMIALS[lens.choice("reference_poly", POLYNOMIALS)]

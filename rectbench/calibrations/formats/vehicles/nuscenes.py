@@ -3,8 +3,7 @@
 A record has a camera's `camera_intrinsic`, K, and its pose in the vehicle: `rotation` (w, x, y, z) and
 `translation`, metres, take the camera's points there (nuScenes' schema). The images are rectified, 1600x900
 pixels, pixel (0, 0) the centre of one. Cameras go by their channels, such as CAM_FRONT, or where a channel
-has several records, of several logs, by these' tokens; the first two are left and right, unless others are
-asked for.
+has several records, of several logs, by these' tokens.
 """
 
 from __future__ import annotations

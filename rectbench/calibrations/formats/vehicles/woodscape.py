@@ -23,7 +23,8 @@ def read_posed(source: Source, given: Given) -> PosedCamera:
     """The camera in the file, posed in the vehicle."""
     lens = source.document.section("intrinsic", "the lens")
     lens.only(KEYS)
-    lens.choice("model", ("radial_poly",), "radial_poly")
+    if "model" in lens:
+        lens.choice("model", ("radial_poly",))
     if "poly_order" in lens and lens.number("poly_order", "4") != len(COEFFICIENTS):
         raise lens.fault("poly_order", f"{len(COEFFICIENTS)}")
     size = lens.sides("width", "height", given.size)

@@ -1,0 +1,107 @@
+"""How keys of lenses and poses are called, in calibration files of any format."""
+
+from __future__ import annotations
+
+import re
+from functools import lru_cache
+
+DISTORTION = frozenset(
+    (
+        *(
+            "distortion",
+            "distortions",
+            "distort",
+            "disto",
+            "dist",
+            "coeff",
+            "coeffs",
+            "coefs",
+            "coefficients",
+        ),
+        *("radial", "tangential", "poly", "polynomial", "prism", "fisheye"),
+    )
+)
+LENS = DISTORTION | frozenset(
+    (
+        *("intrinsic", "intrinsics", "model", "lens", "focal", "skew", "principal", "projection", "mirror"),
+        *("affine", "stretch", "fx", "fy", "cx", "cy", "xi", "tau", "omega", "mtx", "equidistant"),
+        *("fov", "hfov", "vfov", "dfov"),
+    )
+)
+POSE = frozenset(
+    (
+        *("rotation", "rot", "translation", "trans", "rvec", "tvec", "rodrigues", "quaternion", "extrinsic"),
+        *("extrinsics", "pose", "baseline", "rectification", "rectify", "transform", "transformation"),
+    )
+)
+LETTERS = frozenset("KDRTPM")
+"""Capitals that, as a word of a key, are a matrix of the lens or of the pose."""
+
+SHORT = re.compile(r"[kdrtpmf]|k[1-6]|p[12]|s[1-4]")
+"""A whole key, but for its camera's number or side, that is a coefficient or a matrix."""
+
+COEFFICIENT = re.compile(r"k[1-6]|p[12]|s[1-4]|[dD]")
+"""The same of a distortion alone."""
+
+TYPES = frozenset(("type", "kind"))
+"""Words whose value tells: a number, or a word on a lens."""
+
+LENS_WORDS = re.compile(
+    r"pinhole|fish.?eye|equi|kannala|radtan|radial|tangential|plumb|brown|conrady|rational|omni|mei\b|unified"
+    r"|perspective|ucm|double.?sphere|scaramuzza|ocam|division|theta|poly|opencv",
+    re.IGNORECASE,
+)
+"""Of values: what names a projection model."""
+
+OTHERS = frozenset(
+    (
+        *(
+            "imu",
+            "gyro",
+            "gyroscope",
+            "accel",
+            "accelerometer",
+            "magnetometer",
+            "lidar",
+            "laser",
+            "gps",
+            "gnss",
+        ),
+        *("wheel", "vehicle", "essential", "fundamental", "error", "errors", "err", "rms", "rmse", "std"),
+        *("stddev", "deviation", "deviations", "covariance", "cov", "time", "timestamp", "date", "roi"),
+        *("points", "point", "corner", "corners", "board", "pattern", "target", "square", "color", "colour"),
+        *(
+            "noise",
+            "bias",
+            "vignette",
+            "response",
+            "topic",
+            "rostopic",
+            "per",
+            "view",
+            "views",
+            "fps",
+            "rate",
+        ),
+        *("flags", "criteria", "path", "file", "name", "label", "id", "version", "overlaps"),
+    )
+)
+"""Words of keys that are about other things than the two lenses and how they stand."""
+
+SIDES = frozenset(("left", "right", "l", "r", "cam", "camera", "c"))
+
+WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+")
+"""A word of a key in snake_case, camelCase or CAPITALS."""
+
+
+@lru_cache(maxsize=4096)
+def words_of(key: str) -> frozenset[str]:
+    """The words of a key, in small letters."""
+    return frozenset(word.lower() for word in WORD.findall(key))
+
+
+def bare(key: str) -> str:
+    """A key without its camera's side or number."""
+    last = key.rpartition(".")[2]
+    words = [word for word in re.split(r"[_\W]+", last) if word.lower() not in SIDES]
+    return words[0] if len(words) == 1 else last

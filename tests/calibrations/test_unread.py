@@ -1,0 +1,182 @@
+"""Nothing in a file is left unread without a word, whatever reader reads it."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+
+from rectbench import InvalidInput, load_rig
+from rectbench.calibrations.documents.sources import Source
+from rectbench.calibrations.unread import tell_unread
+from tests.calibrations.examples import EXAMPLES, FISHEYES
+from tests.calibrations.test_every_format import assert_same_rig, written
+
+TOLD = {
+    "opencv-sections": "taken for a pinhole's k1 k2 p1 p2",
+    "ros-fisheye-today": "K R in them, as ROS' calibrator of fisheyes writes them",
+    "ros-fisheye-own-focal": "own focal length in them",
+    "kitti-rectified": "holds 3 cameras; 0 and 1 are taken, others by `cameras=`",
+    "realsense-json-plain": "extrinsics: taken to lead from left to right",
+    **dict.fromkeys(
+        (
+            "metashape-fisheye",
+            "transforms",
+            "transforms-ngp",
+            "transforms-f-theta",
+            "openmvg",
+            "alicevision",
+            "alicevision-rig",
+        ),
+        "its scale is arbitrary unless something fixed it; taken to be in metres",
+    ),
+    "argoverse": "distortion_coefficients_: left out, as Argoverse's images are undistorted",
+    "argoverse-two": "k1, k2, k3: left out, as Argoverse's images are undistorted",
+    "left-right": "right.T: taken to take points of the frame that both share to the camera",
+    "simplestereo": "T: the baseline is 110, too long for metres; taken to be in mm",
+    "multical-master": "cameras.cam1.dist: four coefficients, taken for those of MultiCal's fisheye",
+}
+"""Of which examples something is assumed, and what."""
+
+
+@pytest.mark.parametrize("name", TOLD)
+def test_what_is_assumed_is_told(tmp_path: Path, name: str, caplog: pytest.LogCaptureFixture) -> None:
+    load_rig(written(EXAMPLES[name], tmp_path), **EXAMPLES[name].options)
+    assert TOLD[name] in caplog.messages[0]
+
+
+@pytest.mark.parametrize("name", [name for name in EXAMPLES if name not in TOLD])
+def test_of_a_file_that_is_understood_nothing_is_told(
+    tmp_path: Path, name: str, caplog: pytest.LogCaptureFixture
+) -> None:
+    load_rig(written(EXAMPLES[name], tmp_path), **EXAMPLES[name].options)
+    assert caplog.messages == []
+
+
+def changed_chain(folder: Path, **left: object) -> Path:
+    chain = yaml.safe_load(EXAMPLES["kalibr"].files["camchain.yaml"])
+    chain["cam0"] |= left
+    path = folder / "chain.yaml"
+    path.write_text(yaml.safe_dump(chain))
+    return path
+
+
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [
+        ("distortion_type", 1),
+        ("radial_tangential", {"radial": [0.1, 0.2]}),
+        ("lens", "fisheye"),
+        ("P", [[1.0, 2.0, 3.0]]),
+        ("camera_type", "equidistant"),
+        ("T_cam_body", {"rows": 1, "cols": 1, "data": [7.0]}),
+        ("k1", 0.1),
+    ],
+)
+def test_what_looks_like_a_lens_or_a_pose_and_is_not_read_is_told(
+    tmp_path: Path, key: str, value: object, caplog: pytest.LogCaptureFixture
+) -> None:
+    rig = load_rig(changed_chain(tmp_path, **{key: value}))
+    (told,) = caplog.messages
+    assert f"cam0.{key}: looks like part of a lens or a pose, but is not read" in told
+    assert_same_rig(rig, EXAMPLES["kalibr"].rig)
+
+
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [
+        ("rostopic", "/cam0/image_raw"),
+        ("distortion_offset", [0.0, 0.0]),
+        ("R", ""),
+        ("T_cam_imu_std", [1.0, 2.0]),
+        ("camera_type", "gray"),
+        ("imu", {"R": [1.0]}),
+        ("name", "cam"),
+    ],
+)
+def test_what_says_nothing_of_lens_or_pose_is_not_told(
+    tmp_path: Path, key: str, value: object, caplog: pytest.LogCaptureFixture
+) -> None:
+    load_rig(changed_chain(tmp_path, **{key: value}))
+    assert caplog.messages == []
+
+
+def test_a_camera_that_was_not_asked_for_is_no_unread_part(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    content = json.loads(EXAMPLES["basalt"].files["calibration.json"])
+    for values in content["value0"].values():
+        if isinstance(values, list) and len(values) == 2:
+            values.append(values[0])
+    (tmp_path / "three.json").write_text(json.dumps(content))
+    load_rig(tmp_path / "three.json", cameras=("cam0", "cam1"))
+    assert caplog.messages == []
+
+
+def test_a_distortion_left_unread_beside_perfect_pinholes_is_refused(tmp_path: Path) -> None:
+    chain = yaml.safe_load(EXAMPLES["kalibr"].files["camchain.yaml"])
+    for camera in ("cam0", "cam1"):
+        chain[camera] |= {"camera_model": "pinhole", "distortion_model": "none", "distortion_coeffs": []}
+        chain[camera] |= {"intrinsics": [300.0, 300, 424, 400], "distortion_k": [-0.01, 0.02, 0, 0]}
+    (tmp_path / "chain.yaml").write_text(yaml.safe_dump(chain))
+    with pytest.raises(InvalidInput, match=r"cam0\.distortion_k.*: looks like a distortion, which is not"):
+        load_rig(tmp_path / "chain.yaml")
+
+
+def test_a_file_that_a_file_leads_to_is_looked_at_too(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    (path,) = written(EXAMPLES["openvins-estimator"], tmp_path)
+    chain = tmp_path / "chain.yaml"
+    chain.write_text(chain.read_text() + "lens_model: a new one\n")
+    load_rig(path)
+    (told,) = caplog.messages
+    assert told.startswith(f"{chain}: lens_model: looks like part")
+
+
+def test_what_cannot_be_read_tells_nothing_else(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    paths = written(EXAMPLES["ros"], tmp_path)
+    for path in paths:
+        path.write_text(path.read_text().replace("distortion_model: rational_polynomial\n", ""))
+    with pytest.raises(InvalidInput):
+        load_rig(paths, size=(3, 3))
+    assert caplog.messages == []
+    load_rig(paths)
+    assert len(caplog.messages) == 2
+    assert caplog.messages[0].endswith("left.yaml: distortion_model is missing; taken to be plumb_bob")
+
+
+def test_a_reader_need_do_nothing_for_it(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    path = tmp_path / "lab.json"
+    path.write_text('{"baseline": 0.1, "lens": {"focal": 300, "tilt_tau": [0.01, 0.02], "focal_note": ""}}')
+    source = Source.read(path)
+    source.document.number("baseline", "metres")
+    source.document.section("lens", "a lens").number("focal", "pixels")
+    tell_unread([source], FISHEYES)
+    assert caplog.messages == [
+        f"{path}: lens.tilt_tau: looks like part of a lens or a pose, but is not read; left out"
+    ]
+
+
+def test_a_rectification_that_contradicts_the_pose_is_told(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    content = json.loads(EXAMPLES["depthai"].files["calib.json"])
+    content["stereoRectificationData"]["rectifiedRotationRight"] = np.eye(3).tolist()
+    (tmp_path / "oak.json").write_text(json.dumps(content))
+    load_rig(tmp_path / "oak.json")
+    (told,) = caplog.messages
+    assert "turns 2.57° otherwise than the cameras' extrinsics" in told
+
+
+def test_a_baseline_that_contradicts_the_projection_is_told(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    (path,) = written(EXAMPLES["orbslam2"], tmp_path)
+    path.write_text(path.read_text().replace("Camera.bf: 33.0", "Camera.bf: 47.9"))
+    load_rig(path)
+    (told,) = caplog.messages
+    assert "Camera.bf is 47.9, but 33.00" in told
