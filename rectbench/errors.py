@@ -1,13 +1,14 @@
 """The errors rectbench raises on purpose.
 
-Every message is one line that names the thing, the value and what was expected; the command line
-prints it as it stands and exits with code 2.
+Every message is one line that names the thing, the value and what was expected, but where its class says
+that it has several; the command line prints it as it stands and exits with code 2.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 from difflib import get_close_matches
+from typing import ClassVar
 
 
 class RectbenchError(Exception):
@@ -16,6 +17,9 @@ class RectbenchError(Exception):
     >>> issubclass(InvalidInput, RectbenchError)
     True
     """
+
+    has_lines: ClassVar[bool] = False
+    """Whether the message has several lines, to be printed as such."""
 
 
 class InvalidInput(RectbenchError, ValueError):

@@ -14,7 +14,8 @@ from rectbench.calibrations.contract import CameraFormat, Given, RigFormat
 from rectbench.calibrations.documents import Source, checked_size, one_line, shown, tell, telling
 from rectbench.calibrations.documents.sources import is_folder, sources_in
 from rectbench.calibrations.plausibility import tell_implausible
-from rectbench.calibrations.recognising import calibration_formats, camera_format, formats, is_known
+from rectbench.calibrations.recognising import camera_format, formats, is_known
+from rectbench.calibrations.unknown import unknown_format
 from rectbench.calibrations.unread import tell_unread
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig
@@ -94,7 +95,10 @@ def _read(paths: list[RigSource], given: Given) -> Rig:
     folder = Path(paths[0])
     sources = [source for source in sources_in(folder) if is_known(source)]
     if not sources:
-        raise InvalidInput(f"{folder}: holds no calibration known here; expected {_expected()}")
+        raise InvalidInput(
+            f"{folder}: holds no calibration known here; expected one of those that `rectbench list formats` "
+            "names"
+        )
     rig = _read_sources(sources, given)
     return replace(rig, name=one_line(folder.resolve().name) or rig.name)
 
@@ -108,8 +112,7 @@ def _read_sources(sources: list[Source], given: Given) -> Rig:
             tell_unread(sources, rig)
             tell_implausible(rig)
             return rig
-    _ = [source.document for source in sources]  # what is damaged says so itself
-    raise InvalidInput(f"{sources[0].path}: is no calibration known here; expected {_expected()}")
+    raise unknown_format(sources, formats(), given)
 
 
 def _read_by(format: RigFormat | CameraFormat, sources: list[Source], given: Given) -> Rig:
@@ -169,7 +172,3 @@ def _read_cameras(sources: list[Source], given: Given) -> Rig:
         return rig_of_posed(posed, given, name)
     T_right_left = pose_file.read(others[0])
     return assembled(left.camera, right.camera, T_right_left, given, others[0].path, name)
-
-
-def _expected() -> str:
-    return f"one of {', '.join(calibration_formats())}"

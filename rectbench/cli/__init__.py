@@ -37,7 +37,7 @@ for command in (
 
 
 def main() -> None:
-    """Run the command line; a known error is one line on stderr."""
+    """Run the command line; a known error is one line on stderr, or what lines it has."""
     logging.basicConfig(format="rectbench: %(message)s", level=logging.WARNING)
     silence_warnings()
     try:
@@ -55,5 +55,7 @@ def main() -> None:
 
 def _complain(error: object) -> int:
     if str(error):  # without a verb there is only the help, printed already
-        print(f"rectbench: {' '.join(str(error).split())}", file=sys.stderr)
+        lines = str(error).splitlines() if getattr(error, "has_lines", False) else [str(error)]
+        for line in lines:
+            print(f"rectbench: {' '.join(line.split())}", file=sys.stderr)
     return WRONG_USAGE
