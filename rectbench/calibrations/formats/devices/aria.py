@@ -15,7 +15,12 @@ from collections.abc import Sequence
 from rectbench.calibrations.assembling import camera_of, rigid, single
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents import Section, Source
-from rectbench.calibrations.named_cameras import by_name, quaternion_rotation, refuse_unread, rig_of_named
+from rectbench.calibrations.formats.named_cameras import (
+    by_name,
+    quaternion_rotation,
+    refuse_unread,
+    rig_of_named,
+)
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig
 from rectbench.types import FloatArray

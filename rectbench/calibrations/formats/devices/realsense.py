@@ -28,7 +28,7 @@ from rectbench.calibrations.assembling import Pair, assembled, inverse, rigid, s
 from rectbench.calibrations.contract import Given, RigFormat
 from rectbench.calibrations.documents import Section, Source, errors_at, finite_number, shown
 from rectbench.calibrations.formats.devices.realsense_lens import realsense_camera, stereo_pairs
-from rectbench.calibrations.named_cameras import pair_of
+from rectbench.calibrations.formats.named_cameras import pair_of
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig, checked_rotation

@@ -32,7 +32,7 @@ import numpy as np
 from rectbench.calibrations.assembling import camera_of, inverse, rigid, single
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents import Section, Source, errors_at
-from rectbench.calibrations.named_cameras import by_name, refuse_unread, rig_of_named, told_scale
+from rectbench.calibrations.formats.named_cameras import by_name, refuse_unread, rig_of_named, told_scale
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig, checked_rotation

@@ -29,7 +29,7 @@ from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents import Section, Source, agreed_size, one_line, shown
 from rectbench.calibrations.documents.elements import parse_elements
 from rectbench.calibrations.documents.parsing import Malformed
-from rectbench.calibrations.named_cameras import by_name, rig_of_named, told_scale
+from rectbench.calibrations.formats.named_cameras import by_name, rig_of_named, told_scale
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig

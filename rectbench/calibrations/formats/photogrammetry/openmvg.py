@@ -23,7 +23,7 @@ from rectbench.calibrations.assembling import camera_of, rigid, single
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents import Section, Source
 from rectbench.calibrations.documents.entries import take
-from rectbench.calibrations.named_cameras import by_name, rig_of_named, told_scale
+from rectbench.calibrations.formats.named_cameras import by_name, rig_of_named, told_scale
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig

@@ -23,7 +23,7 @@ from collections.abc import Sequence
 from rectbench.calibrations.assembling import camera_of, single
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents import Section, Source, shown, tell
-from rectbench.calibrations.named_cameras import (
+from rectbench.calibrations.formats.named_cameras import (
     Y_UP_Z_BACK,
     by_name,
     refuse_unread,

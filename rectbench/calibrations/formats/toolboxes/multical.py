@@ -17,8 +17,8 @@ from rectbench.calibrations.assembling import inverse, rigid, single
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents import Section, Source, tell
 from rectbench.calibrations.documents.numbers import flat_numbers
+from rectbench.calibrations.formats.named_cameras import rig_of_named
 from rectbench.calibrations.formats.toolboxes.opencv import opencv_camera
-from rectbench.calibrations.named_cameras import rig_of_named
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig
 

@@ -15,8 +15,8 @@ import numpy as np
 from rectbench.calibrations.assembling import LONGEST_BASELINE_M, assembled, rigid, single
 from rectbench.calibrations.contract import Given, RigFormat
 from rectbench.calibrations.documents import Section, Source
+from rectbench.calibrations.formats.named_cameras import told_unit
 from rectbench.calibrations.formats.toolboxes.opencv import COUNTS, opencv_camera
-from rectbench.calibrations.named_cameras import told_unit
 from rectbench.cameras import Camera
 from rectbench.rigs.rig import Rig
 

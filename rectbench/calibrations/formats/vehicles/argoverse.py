@@ -21,7 +21,7 @@ from typing import Any
 from rectbench.calibrations.assembling import camera_of, rigid, single
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents import Section, Source, tell
-from rectbench.calibrations.named_cameras import by_name, quaternion_rotation, rig_of_named
+from rectbench.calibrations.formats.named_cameras import by_name, quaternion_rotation, rig_of_named
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig

@@ -17,8 +17,8 @@ from scipy.spatial.transform import Rotation
 from rectbench.calibrations.assembling import rigid, single
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents import Section, Source, finite_number
+from rectbench.calibrations.formats.named_cameras import by_name, refuse_unread, rig_of_named
 from rectbench.calibrations.formats.vehicles.f_theta_keys import f_theta_camera
-from rectbench.calibrations.named_cameras import by_name, refuse_unread, rig_of_named
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig
 from rectbench.types import FloatArray

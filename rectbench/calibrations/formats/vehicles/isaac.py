@@ -15,8 +15,8 @@ import numpy as np
 from rectbench.calibrations.assembling import camera_of, inverse
 from rectbench.calibrations.contract import CameraFormat, Given, PosedCamera
 from rectbench.calibrations.documents import Section, Source, agreed_size, errors_at
+from rectbench.calibrations.formats.named_cameras import Y_UP_Z_BACK, refuse_unread
 from rectbench.calibrations.formats.vehicles.f_theta_keys import f_theta_camera
-from rectbench.calibrations.named_cameras import Y_UP_Z_BACK, refuse_unread
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import checked_rotation

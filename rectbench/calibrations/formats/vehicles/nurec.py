@@ -15,8 +15,8 @@ from collections.abc import Sequence
 from rectbench.calibrations.assembling import single
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents import Section, Source
+from rectbench.calibrations.formats.named_cameras import by_name, rig_of_named
 from rectbench.calibrations.formats.vehicles.f_theta_keys import f_theta_camera
-from rectbench.calibrations.named_cameras import by_name, rig_of_named
 from rectbench.rigs.rig import Rig
 
 CAMERAS = "camera_calibrations"

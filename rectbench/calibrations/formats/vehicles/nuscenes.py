@@ -14,8 +14,8 @@ from collections.abc import Sequence
 from rectbench.calibrations.assembling import camera_of, rigid
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents import Section, Source
+from rectbench.calibrations.formats.named_cameras import by_name, quaternion_rotation, rig_of_named
 from rectbench.calibrations.formats.toolboxes.opencv import camera_matrix
-from rectbench.calibrations.named_cameras import by_name, quaternion_rotation, rig_of_named
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig
 

@@ -11,8 +11,8 @@ from __future__ import annotations
 from rectbench.calibrations.assembling import rigid
 from rectbench.calibrations.contract import CameraFormat, Given, PosedCamera
 from rectbench.calibrations.documents import Source
+from rectbench.calibrations.formats.named_cameras import quaternion_rotation
 from rectbench.calibrations.formats.vehicles.f_theta_keys import f_theta_camera
-from rectbench.calibrations.named_cameras import quaternion_rotation
 
 COEFFICIENTS = ("k1", "k2", "k3", "k4")
 KEYS = (*COEFFICIENTS, "model", "poly_order", "aspect_ratio", "cx_offset", "cy_offset", "width", "height")
