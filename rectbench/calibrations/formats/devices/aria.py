@@ -56,6 +56,7 @@ def _read_posed(section: Section, size: tuple[int, int]) -> PosedCamera:
     refuse_unread(section, ())
     projection = section.section("Projection", "Name and Params")
     projection.only(("Name", "Params", "Description", "ProjectionModel"))
+    projection.knows("Description", "ProjectionModel")  # of the names in words
     name = projection.choice("Name", MODELS)
     model, names = MODELS[name]
     params = projection.named("Params", names)
