@@ -1,15 +1,20 @@
 """What of a calibration's files looks like part of a lens or a pose, and was not read.
 
 Readers do nothing for it: a file's mappings know which keys were asked for (`documents.entries`). A camera of
-many that nobody asked for is no such part: it was read no further than to tell it from its sibling, and has
-all that was read of that one.
+many that nobody asked for is no such part: it was hardly read, to tell it from its sibling or for where that
+one stands, and has all that was read of that one.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
+from rectbench.calibrations.contract import UNITS
 from rectbench.calibrations.documents import Source, finite_number, one_line, tell
 from rectbench.calibrations.documents.entries import Entries
 from rectbench.calibrations.vocabulary import (
@@ -32,28 +37,74 @@ from rectbench.rigs.rig import Rig
 MAX_KEYS = 6
 """Of a file's unread keys, as many are named."""
 
+AGREEMENT = 0.05
+"""By how much, relative, a length or angle that a file says again may differ; some are nominal."""
+
+
+@dataclass(frozen=True)
+class Part:
+    """An unread key that looks like part of a lens or a pose: its path in the file, and what stands there."""
+
+    path: str
+    value: Any
+    is_distortion: bool
+
 
 def tell_unread(sources: Sequence[Source], rig: Rig) -> None:
     """Tell what looks like part of a lens or a pose in the files that a rig was read from, and was not read.
 
-    Raises InvalidInput where that is a distortion, and no lens of the rig has one.
+    What only says again what the rig is, such as its baseline, is compared with it instead. Raises
+    InvalidInput for a distortion that was not read where no lens of the rig has one.
     """
     for source in _with_companions(sources):
-        for section in source.sections.values():
-            if not isinstance(section.values, Entries) or not section.values.asked:
-                continue
-            unread = list(_unread(section.values, section.key))
-            if not unread:
-                continue
-            names = ", ".join(one_line(name) for name, _ in unread[:MAX_KEYS])
-            more = f" and {len(unread) - MAX_KEYS} more" if len(unread) > MAX_KEYS else ""
-            if any(is_distortion for _, is_distortion in unread) and _has_no_distortion(rig):
-                raise InvalidInput(
-                    f"{source.path}: {names}{more}: looks like a distortion, which is not understood here; "
-                    "expected it where the format has it, without which these are perfect pinholes"
-                )
-            what = "looks like part of a lens or a pose, but is not read; left out"
-            tell(f"{source.path}: {names}{more}: {what}")
+        held = [(v, one.key) for one in source.sections.values() if isinstance(v := one.values, Entries)]
+        read = [(values, key) for values, key in held if _asked(values)]
+        for values, key in read or held:
+            parts = list(_unread(values, key))
+            _tell_parts(
+                source.path, [part for part in parts if not _is_repetition(source.path, part, rig)], rig
+            )
+
+
+def _tell_parts(file: str, parts: Sequence[Part], rig: Rig) -> None:
+    if not parts:
+        return
+    names = ", ".join(one_line(part.path) for part in parts[:MAX_KEYS])
+    more = f" and {len(parts) - MAX_KEYS} more" if len(parts) > MAX_KEYS else ""
+    if any(part.is_distortion for part in parts) and _has_no_distortion(rig):
+        raise InvalidInput(
+            f"{file}: {names}{more}: looks like a distortion, which is not understood here; "
+            "expected it where the format has it, without which these are perfect pinholes"
+        )
+    tell(f"{file}: {names}{more}: looks like part of a lens or a pose, but is not read; left out")
+
+
+def _is_repetition(file: str, part: Part, rig: Rig) -> bool:
+    """Whether a part says again what follows from the rig; that it says otherwise is told."""
+    number = finite_number(part.value)
+    words = words_of(part.path.rpartition(".")[2])
+    if number is None:
+        return False
+    if "baseline" in words:
+        said = min((abs(number) * metres for metres in UNITS.values()), key=lambda m: abs(m - rig.baseline_m))
+        what, stated = f"{rig.baseline_m:.6g} m by the pose", rig.baseline_m
+    elif "hfov" in words:
+        stated = _across_deg(rig)
+        said = min((abs(number), math.degrees(abs(number))), key=lambda angle: abs(angle - stated))
+        what = f"{stated:.4g}° by the lens"
+    else:
+        return False
+    if not abs(said - stated) <= AGREEMENT * stated:
+        tell(f"{file}: {one_line(part.path)} is {number:.6g}, but it is {what}, which is kept to")
+    return True
+
+
+def _across_deg(rig: Rig) -> float:
+    """The left camera's field of view across its image, degrees; NaN where it does not see its sides."""
+    camera = rig.left
+    middle = 0.5 * (camera.height - 1)
+    rays, _ = camera.unproject([[-0.5, middle], [camera.width - 0.5, middle]])
+    return math.degrees(math.acos(float(np.clip(rays[0] @ rays[1], -1.0, 1.0))))
 
 
 def _with_companions(sources: Sequence[Source]) -> Iterator[Source]:
@@ -70,20 +121,22 @@ def _has_no_distortion(rig: Rig) -> bool:
     )
 
 
-def _unread(entries: Entries, path: str) -> Iterator[tuple[str, bool]]:
-    """The paths of unread keys of lens or pose below a mapping, and whether each is a distortion."""
+def _unread(entries: Entries, path: str) -> Iterator[Part]:
+    """The unread keys of lens or pose below a mapping."""
     children = [value for key, value in entries.items() if _is_held(key) and not _is_matrix(value)]
     for key, value in entries.items():
         is_read_leaf = key in entries.asked and not isinstance(value, dict | list)
         if is_read_leaf or not _is_held(key) or _is_blank(value):
             continue
+        if not _is_matrix(value) and _is_other_camera(value, children):
+            continue
         if key in entries.asked and not _is_untouched(value):
             yield from _below(value, f"{path}{key}")
-        elif _is_matrix(value) or not _is_other_camera(value, children):
+        else:
             yield from _lens_or_pose(key, value, path)
 
 
-def _below(value: Any, path: str) -> Iterator[tuple[str, bool]]:
+def _below(value: Any, path: str) -> Iterator[Part]:
     """The same of a key's value that was asked for."""
     if isinstance(value, Entries):
         yield from _unread(value, f"{path}.")
@@ -93,21 +146,21 @@ def _below(value: Any, path: str) -> Iterator[tuple[str, bool]]:
                 yield from _below(item, f"{path}.{place}")
 
 
-def _lens_or_pose(key: str, value: Any, path: str) -> Iterator[tuple[str, bool]]:
+def _lens_or_pose(key: str, value: Any, path: str) -> Iterator[Part]:
     """What of an unread key, or below it, is of a lens or a pose."""
     words = words_of(key)
     if isinstance(value, Entries) and not _is_matrix(value):
         inner = [one for name, item in value.items() if not _is_blank(item) and _is_held(name)
                  for one in _lens_or_pose(name, item, f"{path}{key}.")]  # fmt: skip
-        is_part = bool(DISTORTION.intersection(words)) or any(is_distortion for _, is_distortion in inner)
-        if inner:
-            yield f"{path}{key}", is_part
+        is_distortion = bool(DISTORTION.intersection(words)) or any(part.is_distortion for part in inner)
+        if inner or (LENS | POSE).intersection(words):
+            yield Part(f"{path}{key}", value, is_distortion)
     elif isinstance(value, list) and any(isinstance(item, Entries) for item in value):
         for place, item in enumerate(value):
             if isinstance(item, Entries):
                 yield from _lens_or_pose(str(place), item, f"{path}{key}.")
     elif _names_lens_or_pose(key, value, words):
-        yield f"{path}{key}", _is_distortion(key, value, words)
+        yield Part(f"{path}{key}", value, _is_distortion(key, value, words))
 
 
 def _names_lens_or_pose(key: str, value: Any, words: frozenset[str]) -> bool:
@@ -165,10 +218,10 @@ def _asked(value: Any) -> int:
 
 
 def _is_other_camera(value: Any, siblings: Sequence[Any]) -> bool:
-    """Whether a mapping was read less far than a sibling, all of whose read keys it has."""
+    """Whether a mapping was read at most half as far as a sibling, all of whose read keys it has."""
     count = _asked(value)
     return isinstance(value, dict | list) and any(
-        sibling is not value and count < _asked(sibling) and _has_what_was_read(value, sibling)
+        sibling is not value and 2 * count <= _asked(sibling) > 0 and _has_what_was_read(value, sibling)
         for sibling in siblings
         if isinstance(sibling, dict | list)
     )

@@ -34,13 +34,14 @@ POSE = frozenset(
         *("extrinsics", "pose", "baseline", "rectification", "rectify", "transform", "transformation"),
     )
 )
+LEAST_LETTERS = 6
 LETTERS = frozenset("KDRTPM")
 """Capitals that, as a word of a key, are a matrix of the lens or of the pose."""
 
-SHORT = re.compile(r"[kdrtpmf]|k[1-6]|p[12]|s[1-4]")
+SHORT = re.compile(r"[kdrtpmf]|k[1-6]|[pt][12]|s[1-4]")
 """A whole key, but for its camera's number or side, that is a coefficient or a matrix."""
 
-COEFFICIENT = re.compile(r"k[1-6]|p[12]|s[1-4]|[dD]")
+COEFFICIENT = re.compile(r"k[1-6]|[pt][12]|s[1-4]|[dD]")
 """The same of a distortion alone."""
 
 TYPES = frozenset(("type", "kind"))
@@ -88,6 +89,9 @@ OTHERS = frozenset(
 )
 """Words of keys that are about other things than the two lenses and how they stand."""
 
+LONG = frozenset(word for word in LENS | POSE if len(word) >= LEAST_LETTERS)
+"""Words that are found within another, as in `radialdistortion`."""
+
 SIDES = frozenset(("left", "right", "l", "r", "cam", "camera", "c"))
 
 WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+")
@@ -97,7 +101,8 @@ WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+")
 @lru_cache(maxsize=4096)
 def words_of(key: str) -> frozenset[str]:
     """The words of a key, in small letters."""
-    return frozenset(word.lower() for word in WORD.findall(key))
+    words = {word.lower() for word in WORD.findall(key)}
+    return frozenset(words.union(*({long for long in LONG if long in word} for word in words)))
 
 
 def bare(key: str) -> str:

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from rectbench.calibrations import told_already
 from rectbench.errors import PoseNotFound
 from rectbench.images.reading import read_images, rgb8
 from rectbench.images.stereo_pair import StereoPair
@@ -34,7 +35,8 @@ class PhotographedPair(Pair):
     def rig(self) -> Rig:
         spec, files = self.spec, tuple(map(Path, self.spec.calibration))
         how = spec.model_dump(include={"size", "unit", "max_angle_deg", "cameras"})
-        return Calibration(spec.rig, files, files[0].parent, **how).rig()
+        with told_already():  # when the photographs were found
+            return Calibration(spec.rig, files, files[0].parent, **how).rig()
 
     @cached_property
     def inputs(self) -> Inputs:

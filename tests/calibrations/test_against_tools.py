@@ -267,7 +267,7 @@ def test_any_two_cameras_of_a_chain_make_a_rig(tmp_path: Path) -> None:
     np.testing.assert_allclose(forward.t_right_left, (step @ step)[:3, 3], atol=1e-12)
     backward = load_rig(tmp_path / "chain.yaml", cameras=["cam2", "cam0"])
     np.testing.assert_allclose(backward.t_right_left, forward.centre_right_in_left, atol=1e-12)
-    with pytest.raises(InvalidInput, match="has no camera 'cam7'; expected two of cam0, cam1, cam2"):
+    with pytest.raises(InvalidInput, match="has no camera 'cam7'; expected two of 'cam0', 'cam1', 'cam2'"):
         load_rig(tmp_path / "chain.yaml", cameras=["cam0", "cam7"])
 
 

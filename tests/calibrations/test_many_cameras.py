@@ -98,15 +98,20 @@ def with_a_third(name: str, folder: Path) -> list[Path]:
 
 
 @pytest.mark.parametrize("name", ["kalibr", "basalt", "ncamera", "ncamera-maplab", "okvis"])
-def test_of_three_cameras_the_pairs_are_listed_and_none_is_taken(tmp_path: Path, name: str) -> None:
+def test_of_three_cameras_the_pairs_are_listed_and_none_is_taken(
+    tmp_path: Path, name: str, caplog: pytest.LogCaptureFixture
+) -> None:
     paths = with_a_third(name, tmp_path)
     with pytest.raises(CamerasNotChosen, match="holds 3 cameras; expected `cameras=`") as caught:
         load_rig(paths)
     assert caught.value.names == ("cam0", "cam1", "cam2")
     assert "cam0,cam1 (baseline 0.11 m, " in str(caught.value)
     assert "\n" not in str(caught.value)
+    caplog.clear()
     rig = load_rig(paths, cameras=("cam0", "cam1"))
     np.testing.assert_allclose(rig.t_right_left, EXAMPLES[name].rig.t_right_left, atol=1e-12)
+    assert load_rig(paths, cameras=("cam0", "cam2")).baseline_m > 0
+    assert caplog.messages == []
 
 
 def test_the_pairs_that_see_most_in_common_come_first_and_left_is_left(tmp_path: Path) -> None:

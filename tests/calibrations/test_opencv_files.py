@@ -110,6 +110,29 @@ def test_four_coefficients_of_no_lens_stated_are_a_pinhole_s_and_told(
     assert not caplog.records
 
 
+@pytest.mark.parametrize("key", ["distortion_model", "lens", "camera_type", "lens_type"])
+def test_a_lens_may_be_named_by_another_key(
+    tmp_path: Path, key: str, caplog: pytest.LogCaptureFixture
+) -> None:
+    rig = load(tmp_path, opencv_file(**UNTOLD, **{key: "equidistant"}))
+    assert (rig.left.model, rig.right.model) == ("kannala-brandt", "kannala-brandt")
+    assert caplog.messages == []
+    assert load(tmp_path, opencv_file(**WHOLE_RIG, **{key: "gray"})).left == rig.left
+
+
+def test_four_and_zeros_are_as_untold_as_four(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    five = {key: np.array([[*D[0], 0.0]]) for key, D in RADTAN.items()}
+    rig = load(tmp_path, opencv_file(**UNTOLD | five))
+    assert "D1: taken for a pinhole's k1 k2 p1 p2" in caplog.text
+    assert rig.left.model == "pinhole"
+    caplog.clear()
+    five = {key: np.array([[*D[0], 0.01]]) for key, D in RADTAN.items()}
+    load(tmp_path, opencv_file(**UNTOLD | five))
+    assert caplog.messages == []
+    with pytest.raises(InvalidInput, match="more of a fisheye's than a pinhole's"):
+        load(tmp_path, opencv_file(**UNTOLD | {"D1": np.array([[*D1[0], 0.0]])}))
+
+
 def test_four_coefficients_that_are_hardly_a_pinhole_s_are_refused(tmp_path: Path) -> None:
     with pytest.raises(InvalidInput, match="more of a fisheye's than a pinhole's; expected `model: fisheye`"):
         load(tmp_path, opencv_file(**UNTOLD))

@@ -10,6 +10,7 @@ import pytest
 import yaml
 
 from rectbench import InvalidInput, load_rig
+from rectbench.calibrations import telling, told_already
 from rectbench.calibrations.documents.sources import Source
 from rectbench.calibrations.unread import tell_unread
 from tests.calibrations.examples import EXAMPLES, FISHEYES
@@ -17,6 +18,8 @@ from tests.calibrations.test_every_format import assert_same_rig, written
 
 TOLD = {
     "opencv-sections": "taken for a pinhole's k1 k2 p1 p2",
+    "opencv-samples": "taken for a pinhole's k1 k2 p1 p2",
+    "opencv-left-right": "taken for a pinhole's k1 k2 p1 p2",
     "ros-fisheye-today": "K R in them, as ROS' calibrator of fisheyes writes them",
     "ros-fisheye-own-focal": "own focal length in them",
     "kitti-rectified": "holds 3 cameras; 0 and 1 are taken, others by `cameras=`",
@@ -33,6 +36,7 @@ TOLD = {
         ),
         "its scale is arbitrary unless something fixed it; taken to be in metres",
     ),
+    "drive": "linear-c, linear-d, linear-e: missing; taken to be those of no stretch: 1, 0, 0",
     "argoverse": "distortion_coefficients_: left out, as Argoverse's images are undistorted",
     "argoverse-two": "k1, k2, k3: left out, as Argoverse's images are undistorted",
     "left-right": "right.T: taken to take points of the frame that both share to the camera",
@@ -180,3 +184,46 @@ def test_a_baseline_that_contradicts_the_projection_is_told(
     load_rig(path)
     (told,) = caplog.messages
     assert "Camera.bf is 47.9, but 33.00" in told
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "message"),
+    [
+        ("baseline", 0.1100, None),
+        ("baseline_mm", 110.0, None),
+        ("Baseline", 0.25, "Baseline is 0.25, but it is 0.110019 m by the pose, which is kept to"),
+        ("hfov", 160.0, "hfov is 160, but it is"),
+    ],
+)
+def test_a_length_or_an_angle_that_is_said_again_is_compared(
+    tmp_path: Path, key: str, value: float, message: str | None, caplog: pytest.LogCaptureFixture
+) -> None:
+    chain = yaml.safe_load(EXAMPLES["kalibr"].files["camchain.yaml"])
+    (tmp_path / "chain.yaml").write_text(yaml.safe_dump(chain | {key: value}))
+    load_rig(tmp_path / "chain.yaml")
+    assert [message in told for told in caplog.messages] == [True] if message else caplog.messages == []
+
+
+def test_a_file_of_which_nothing_was_read_is_told(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    """A second configuration in a folder, which nobody asks."""
+    written(EXAMPLES["vins"], tmp_path)
+    (tmp_path / "other.yaml").write_text(next(iter(EXAMPLES["euroc"].files.values())))
+    load_rig(tmp_path)
+    (told,) = caplog.messages
+    assert told.startswith(f"{tmp_path / 'other.yaml'}: ")
+    assert "T_BS" in told
+
+
+def test_what_was_told_of_files_already_is_not_told_again(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    path = changed_chain(tmp_path, lens="fisheye")
+    with told_already() as lines:
+        load_rig(path)
+    assert caplog.messages == []
+    assert len(lines) == 1
+    with telling():
+        load_rig(path)
+        load_rig(path)
+        assert caplog.messages == []
+    assert caplog.messages == lines

@@ -105,6 +105,13 @@ def refuse_unread(section: Section, known: Collection[str]) -> None:
             )
 
 
+def tell_missing(section: Section, keys: Iterable[str], taken: str) -> None:
+    """Tell which of these keys a section has not, and what they are taken to be."""
+    missing = [key for key in keys if key not in section]
+    if missing:
+        tell(f"{section.at(', '.join(missing))}: missing; taken to be {taken}")
+
+
 def told_scale(where: str, given: Given) -> str:
     """The unit of a reconstruction, whose scale nothing need have fixed: that given, or else metres, told."""
     if given.unit is None:

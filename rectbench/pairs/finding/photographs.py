@@ -10,6 +10,7 @@ from pathlib import Path
 
 import cv2
 
+from rectbench.calibrations import telling
 from rectbench.errors import InvalidInput
 from rectbench.images.reading import IMAGE_SUFFIXES
 from rectbench.pairs.finding.calibrations import (
@@ -56,6 +57,7 @@ class Photographs:
         return path.relative_to(self.folder).as_posix() if path.is_relative_to(self.folder) else str(path)
 
 
+@telling()
 def find_photographs(folder: str | Path) -> Photographs:
     """The pairs in a folder and all below it, each with the calibration nearest above it.
 

@@ -15,7 +15,7 @@ import numpy as np
 from rectbench.calibrations.assembling import Pair, chosen, rig_of_posed, rigid, single
 from rectbench.calibrations.consistency import compare_rotations, rotation_in
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
-from rectbench.calibrations.documents import Section, Source, finite_number
+from rectbench.calibrations.documents import Section, Source, finite_number, tell
 from rectbench.calibrations.formats.toolboxes.opencv import opencv_camera
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig
@@ -104,6 +104,8 @@ def _to_last(cameras: dict[str, Section], name: str) -> tuple[str, FloatArray]:
 
 
 def _read_posed(section: Section, T: FloatArray, given: Given) -> PosedCamera:
+    if "cameraType" not in section:
+        tell(f"{section.at('cameraType')} is missing; taken to be 0, perspective")
     kind = section.number("cameraType", "0 or 1") if "cameraType" in section else 0
     if kind not in LENSES:
         raise section.fault("cameraType", "0 (perspective) or 1 (fisheye)")

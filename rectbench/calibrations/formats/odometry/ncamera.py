@@ -12,7 +12,7 @@ from typing import Any
 
 from rectbench.calibrations.assembling import camera_of, inverse, rig_of_list, single
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
-from rectbench.calibrations.documents import Section, Source
+from rectbench.calibrations.documents import Section, Source, tell
 from rectbench.calibrations.formats.odometry.kalibr import LAYOUTS, Layout
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig
@@ -60,7 +60,9 @@ def _layout(section: Section) -> Layout:
     if not known:
         raise section.fault("type", " or ".join(PROJECTIONS))
     distortion = "none"
-    if "distortion" in section:
+    if "distortion" not in section:
+        tell(f"{section.at('distortion')} is missing; taken to be none")
+    else:
         distortions = section.section("distortion", "its type and parameters")
         distortion = distortions.text("type", ", ".join(known))
         if distortion not in known:

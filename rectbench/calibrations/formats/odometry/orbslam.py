@@ -25,7 +25,7 @@ from rectbench.calibrations.consistency import compare_numbers
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents import Section, Source
 from rectbench.calibrations.formats.devices.ros import rectified
-from rectbench.calibrations.formats.toolboxes.opencv import opencv_camera
+from rectbench.calibrations.formats.toolboxes.opencv import ORDERS, check_pinhole, opencv_camera
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig
@@ -102,6 +102,11 @@ def _read_rectified(file: Section, side: str, given: Given) -> PosedCamera:
     size = file.sides(f"{prefix}width", f"{prefix}height", given.size)
     lens = _rectified_lens(file)
     camera = opencv_camera(file, f"{side}.K", f"{side}.D", lens, size)
+    if lens == "pinhole" and "distortion_type" not in file:
+        coefficients = {name: camera.params[name] for name in ORDERS[lens] if name in camera.params}
+        check_pinhole(
+            file.at(f"{side}.D"), coefficients, "`distortion_type: 0` or 1 (fisheye)", is_usual=True
+        )
     posed = rectified(PosedCamera(file.at(f"{side}.R"), camera), file, f"{side}.R", f"{side}.P")
     if posed.T_shared_camera is None:
         raise InvalidInput(f"{file.at(side)}.R or {side}.P is missing; expected cv2.stereoRectify's R and P")

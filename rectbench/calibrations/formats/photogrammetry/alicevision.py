@@ -32,7 +32,13 @@ import numpy as np
 from rectbench.calibrations.assembling import camera_of, inverse, rigid, single
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents import Section, Source, errors_at
-from rectbench.calibrations.formats.named_cameras import by_name, refuse_unread, rig_of_named, told_scale
+from rectbench.calibrations.formats.named_cameras import (
+    by_name,
+    refuse_unread,
+    rig_of_named,
+    tell_missing,
+    told_scale,
+)
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig, checked_rotation
@@ -121,6 +127,8 @@ def _views(file: Section) -> list[tuple[str, _View]]:
             continue
         T = _transform(pose.section("pose", "a pose").section("transform", "rotation and center"))
         is_of_rig = "rigId" in view and str(view.values.get("isPoseIndependant", "true")).lower() in "false0"
+        if "rigId" in view:
+            tell_missing(view, ["isPoseIndependant"], "true, so that the view's pose is its own")
         if is_of_rig:
             T = _sub_pose(view, rigs) @ T
         elif "subPoseId" in view and "rigId" not in view:
@@ -183,6 +191,8 @@ def _focal(section: Section, version: Version, size: tuple[int, int]) -> tuple[f
     if version < (1, 2, 2):
         both = section.array("pxFocalLength", "one or two numbers of pixels", (1, 2)).tolist()
         return both[0], both[-1]
+    tell_missing(section, ["sensorWidth"], "36 mm")
+    tell_missing(section, ["pixelRatio"], "1")
     sensor = section.number("sensorWidth", "mm") if "sensorWidth" in section else 36.0
     if not sensor > 0:
         raise section.fault("sensorWidth", "mm above 0")

@@ -28,6 +28,7 @@ from rectbench.calibrations.formats.named_cameras import (
     by_name,
     refuse_unread,
     rig_of_named,
+    tell_missing,
     told_scale,
 )
 from rectbench.cameras import Camera
@@ -37,6 +38,18 @@ from rectbench.rigs.rig import Rig
 PERSPECTIVE = ("SIMPLE_PINHOLE", "PINHOLE", "SIMPLE_RADIAL", "RADIAL", "OPENCV")
 MODELS = (*PERSPECTIVE, "OPENCV_FISHEYE")
 ORDERS = {"pinhole": ("k1", "k2", "k3", "p1", "p2"), "kannala-brandt": ("k1", "k2", "k3", "k4")}
+EXPECTED = {
+    "SIMPLE_RADIAL": ("k1",),
+    "RADIAL": ("k1", "k2"),
+    "OPENCV": ("k1", "k2", "p1", "p2"),
+    "OPENCV_FISHEYE": ("k1", "k2", "k3", "k4"),
+}
+UNSTATED = {"pinhole": EXPECTED["OPENCV"], "kannala-brandt": EXPECTED["OPENCV_FISHEYE"]}
+"""The coefficients that a model has, and a lens with any whose model is not stated.
+
+One that is missing is 0 to nerfstudio.
+"""
+
 DISTORTION = ("k1", "k2", "k3", "k4", "p1", "p2")
 F_THETA = tuple(f"ftheta_p{power}" for power in range(6))
 FORWARD = tuple(f"ftheta_f{power}" for power in range(6))
@@ -102,6 +115,7 @@ def _camera(lens: Section, given: Given) -> Camera:
         lens.number(key, "pixels") if key in lens else side / 2
         for key, side in zip(("cx", "cy"), size, strict=True)
     )
+    tell_missing(lens, ("cx", "cy"), "the image's centre")
     centre = {"cx": cx - 0.5, "cy": cy - 0.5}
     if F_THETA[0] in lens:
         return camera_of(lens.where, "f-theta", size, centre | {"angle_poly": _angle_poly(lens)})
@@ -110,6 +124,8 @@ def _camera(lens: Section, given: Given) -> Camera:
     if fx is None:
         raise lens.fault("fl_x", "the focal length, pixels, or camera_angle_x")
     fy = _focal(lens, "y", size[1])
+    if fy is None:
+        tell_missing(lens, ["fl_y"], "fl_x")
     focal = {"fx": fx, "fy": fx if fy is None else fy}
     return camera_of(lens.where, model, size, centre | focal | _distortion(lens, model))
 
@@ -151,6 +167,8 @@ def _focal(lens: Section, axis: str, side: int) -> float | None:
 
 def _distortion(lens: Section, model: str) -> dict[str, float]:
     params = {name: lens.number(name, "a coefficient") for name in DISTORTION if name in lens}
+    expected = EXPECTED.get(str(lens.values.get("camera_model")), UNSTATED[model] if params else ())
+    tell_missing(lens, expected, "0")
     for name, number in params.items():
         if number != 0 and name not in ORDERS[model]:
             raise lens.fault(name, f"0, as {model} has no {name} here")

@@ -15,7 +15,7 @@ from typing import Any
 from rectbench.calibrations.assembling import Pair, chosen, inverse, rig_of_posed, rigid, single
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents import Section, Source
-from rectbench.calibrations.formats.toolboxes.opencv import opencv_camera
+from rectbench.calibrations.formats.toolboxes.opencv import ORDERS, check_pinhole, opencv_camera
 from rectbench.calibrations.pose_file import read_rotation
 from rectbench.rigs.rig import Rig
 
@@ -45,9 +45,18 @@ def _read_posed(section: Section, given: Given) -> PosedCamera:
     lens = "fisheye" if str(section.values.get("fisheye", False)).lower() == "true" else "pinhole"
     size = section.size("size", given.size)
     camera = opencv_camera(section, "matrix", "distortions", lens, size, section.where)
+    if lens == "pinhole":
+        _check_pinhole(section, [camera.params[name] for name in ORDERS[lens]])
     R = read_rotation(section, "rotation")
     t = section.array("translation", "three numbers in the board's unit", (3,))
     return PosedCamera(section.where, camera, inverse(rigid(R, t)))
+
+
+def _check_pinhole(section: Section, coefficients: list[float]) -> None:
+    """Four are a fisheye's in all that anipose writes itself, which then says so."""
+    is_usual = "fisheye" in section or len(section.array("distortions", "coefficients", range(1, 15))) != 4
+    named = dict(zip(ORDERS["pinhole"], coefficients, strict=True))
+    check_pinhole(section.at("distortions"), named, "`fisheye = true` or `fisheye = false`", is_usual)
 
 
 def _recognises(source: Source) -> bool:

@@ -49,9 +49,12 @@ def _read_distortion(section: Section) -> dict[str, float]:
     radial = section.numbers("radial", "up to four coefficients") if "radial" in section else []
     if len(radial) > len(RADIAL):
         raise section.fault("radial", "up to four coefficients")
-    tangential = {
-        ours: section.number(t, "a number") for t, ours in (("t1", "p1"), ("t2", "p2")) if t in section
-    }
+    tangential = {}
+    for t, ours in (("t1", "p1"), ("t2", "p2")):
+        if t in section:
+            tangential[ours] = section.number(t, "a number")
+        else:
+            tell(f"{section.at(t)} is missing; taken to be 0")
     return dict(zip(RADIAL, radial, strict=False)) | tangential
 
 

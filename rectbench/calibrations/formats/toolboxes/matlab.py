@@ -23,7 +23,7 @@ import numpy as np
 from rectbench.calibrations import pose_file as pose
 from rectbench.calibrations.assembling import assembled, camera_of, rigid, single
 from rectbench.calibrations.contract import CameraFormat, Given, PosedCamera, RigFormat
-from rectbench.calibrations.documents import Section, Source, agreed_size
+from rectbench.calibrations.documents import Section, Source, agreed_size, tell
 from rectbench.calibrations.formats.toolboxes.ocamcalib import stretched
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
@@ -129,7 +129,9 @@ def _pinhole(lens: Section, outer: Section) -> dict[str, float]:
     holder = lens if "RadialDistortion" in lens else outer
     params = {"fx": fx, "fy": fy, "cx": u - 1, "cy": v - 1}
     for key, names, counts in DISTORTION:
-        if key in holder:
+        if key not in holder:
+            tell(f"{holder.at(key)} is missing; taken to be none")
+        else:
             numbers = holder.array(key, f"{' or '.join(map(str, counts))} coefficients", counts)
             params |= dict(zip(names, numbers.tolist(), strict=False))
     return params

@@ -15,8 +15,9 @@ for each camera, such as `left_camera` and `right_camera`, with the pose beside 
 
 X_right = R X_left + T, as `stereoCalibrate` gives it, in the unit of the board's squares: metres unless
 the caller says otherwise. Several files complete each other; a file for each camera is read in the
-order given, left first. Four distortion coefficients of which no file says whether they are a pinhole's or a
-fisheye's are taken for a pinhole's, which the log tells, or refused where they can hardly be. Where the
+order given, left first. Four distortion coefficients, or four and zeros, of which no file says whether they
+are a pinhole's or a fisheye's are taken for a pinhole's, which the log tells, or refused where they can
+hardly be. A word on the lens may stand under other keys too, such as `distortion_model` or `lens`. Where the
 cameras differ in lens or size, `model_1`, `imageSize_1` and the like tell them apart.
 Pixel (0, 0) is the centre of a pixel; K's skew counts for a fisheye (K[0, 1] = alpha fx) and an
 omnidirectional camera, as in OpenCV's functions, and `projectPoints` has none for a pinhole.
@@ -27,7 +28,7 @@ xi_1 xi_2.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -47,6 +48,7 @@ from rectbench.calibrations.formats.toolboxes.opencv_keys import (
     MARKS,
     MATRIX,
     MODEL,
+    OTHER_MODEL,
     PAIRS,
     ROTATION,
     SIDES,
@@ -91,11 +93,28 @@ LARGEST_TANGENTIAL = 0.02
 """Of p1 and p2 of a pinhole; what is larger, third or fourth of four, is rather a fisheye's k3 or k4."""
 
 WORDS = {
-    "pinhole": ("pinhole", "perspective", "radtan", "plumb_bob", "rational_polynomial"),
-    "fisheye": ("fisheye", "equidistant", "kannala-brandt", "kannala_brandt"),
+    "pinhole": (
+        *("pinhole", "perspective", "radtan", "plumb_bob", "rational_polynomial", "opencv", "brown_conrady"),
+        *("radial-tangential", "radial_tangential", "radtan8", "standard", "rational"),
+    ),
+    "fisheye": (
+        *(
+            "fisheye",
+            "equidistant",
+            "kannala-brandt",
+            "kannala_brandt",
+            "opencv_fisheye",
+            "equi",
+            "kb4",
+            "kb8",
+        ),
+        *("kannalabrandt8", "kannala_brandt4", "kannalabrandt4", "kannalabrandt"),
+    ),
     "omnidir": ("omnidir", "omni", "mei"),
 }
 """What files call the lenses."""
+
+LENS_REMEDY = "`model: fisheye` or `model: pinhole`, in the file or in another one beside it"
 
 LENSES = {word: lens for lens, words in WORDS.items() for word in words}
 
@@ -117,6 +136,8 @@ def lens_parameters(file: Section, key: str, lens: str, counts: Collection[int])
     expected = " or ".join(filter(None, (", ".join(lengths[:-1]), lengths[-1])))
     values = file.values.get(key)
     if 0 in counts and values in ([], None):
+        if key not in file:
+            tell(f"{file.at(key)} is missing; taken to be none")
         return {}
     expected = f"{expected} distortion coefficients ({lens})"
     # ROS drivers, and depthai, fill the vector of a fisheye up with zeros to that of a pinhole.
@@ -190,8 +211,8 @@ def _read_camera(files: Files, number: int, size: tuple[int, int] | None) -> Cam
     counts = COUNTS[lens]
     source, name = files.first(DISTORTION, number, f"{counts[0]} distortion coefficients ({lens})")
     coefficients = lens_parameters(source, name, lens, counts)
-    if (stated, lens, len(coefficients)) == (None, "pinhole", 4):
-        _check_pinhole(source.at(name), coefficients)
+    if stated is None and lens == "pinhole":
+        check_pinhole(source.at(name), coefficients, LENS_REMEDY)
     params |= coefficients
     if lens == "omnidir":
         holder, xi_key = xi or files.first(XI, number, "Mei's xi, a number")
@@ -200,13 +221,19 @@ def _read_camera(files: Files, number: int, size: tuple[int, int] | None) -> Cam
     return camera_of(f"{document.at(key)}, {name}", model_of(lens, params), image, params)
 
 
-def _check_pinhole(where: str, coefficients: dict[str, float]) -> None:
-    """Tell that four coefficients are taken for a pinhole's, or refuse those that can hardly be."""
-    remedy = "`model: fisheye` or `model: pinhole`, in the file or in another one beside it"
-    if max(abs(coefficients["p1"]), abs(coefficients["p2"])) > LARGEST_TANGENTIAL:
-        found = shown(list(coefficients.values()))
+def check_pinhole(where: str, coefficients: Mapping[str, float], remedy: str, is_usual: bool = False) -> None:
+    """Tell that four coefficients, or four and zeros, are taken for a pinhole's, since no file says whose.
+
+    Refused are those that can hardly be. Where the format's are usually a pinhole's, all else is not told.
+    """
+    numbers = list(coefficients.values())
+    if not any(numbers) or any(numbers[4:]):
+        return
+    if max(map(abs, numbers[2:4])) > LARGEST_TANGENTIAL:
+        found = shown(numbers)
         raise InvalidInput(f"{where} is {found}, more of a fisheye's than a pinhole's; expected {remedy}")
-    tell(f"{where}: taken for a pinhole's k1 k2 p1 p2; a word on the lens would be {remedy}")
+    if not is_usual:
+        tell(f"{where}: taken for a pinhole's k1 k2 p1 p2; a word on the lens would be {remedy}")
 
 
 def _read_lens(files: Files, number: int) -> str | None:
@@ -222,6 +249,11 @@ def _read_lens(files: Files, number: int) -> str | None:
         if word not in LENSES:
             raise InvalidInput(f"{document.at(key)} is {shown(word)}; expected pinhole, fisheye or omnidir")
         return LENSES[word]
+    for document, key in (*files.of_camera(OTHER_MODEL, number), *files.holders(OTHER_MODEL)):
+        word = str(dict(document.values.items())[key]).lower()  # is not read where it is another word
+        if word in LENSES:
+            document.knows(key)
+            return LENSES[word]
     return None
 
 

@@ -32,6 +32,12 @@ SIX = "extrinsic_parameters"
 SIZE = ("imageSize", "image_size", "ImageSize", "cameraResolution")
 SIDES = ("image_width", "image_height")
 MODEL = ("model", "camera_model")
+OTHER_MODEL = (
+    *("distortion_model", "distortionModel", "cameraModel", "lens", "lens_model", "lens_type", "lensType"),
+    *("camera_type", "cameraType", "projection_model", "distortion_type", "distortion", "type"),
+)
+"""Keys that may name the lens, and may be about another thing."""
+
 FLAGS = ("fisheye_model", "fisheye", "is_fisheye")
 
 FROM_ONE = (("{}1", "{}2"), ("{}_1", "{}_2"))

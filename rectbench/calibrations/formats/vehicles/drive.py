@@ -17,7 +17,7 @@ from scipy.spatial.transform import Rotation
 from rectbench.calibrations.assembling import rigid, single
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents import Section, Source, finite_number
-from rectbench.calibrations.formats.named_cameras import by_name, refuse_unread, rig_of_named
+from rectbench.calibrations.formats.named_cameras import by_name, refuse_unread, rig_of_named, tell_missing
 from rectbench.calibrations.formats.vehicles.f_theta_keys import f_theta_camera
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig
@@ -64,6 +64,7 @@ def _read_posed(sensor: Section, given: Given) -> PosedCamera:
     key = next((key for key in POLYNOMIALS if key in properties), POLYNOMIALS[0])
     known = {"bw-poly": True, "fw-poly": False}
     by_distance = known[key] if key in known else TYPES[properties.choice("polynomial-type", TYPES)]
+    tell_missing(properties, LINEAR, "those of no stretch: 1, 0, 0")
     linear = [
         properties.number(name, "a number") if name in properties else default
         for name, default in LINEAR.items()
@@ -87,6 +88,7 @@ def _pose(sensor: Section) -> FloatArray:
     nominal = sensor.section(POSE, f"{ANGLES} and t")
     if "quaternion" in nominal:
         raise InvalidInput(f"{nominal.at('quaternion')} is not read; expected {ANGLES} and t alone")
+    tell_missing(sensor, (TURN, SHIFT), "0")
     R, t = _turn(nominal), np.array(nominal.numbers("t", "three metres", 3))
     if TURN in sensor:
         R = R @ _turn(sensor.section(TURN, ANGLES))

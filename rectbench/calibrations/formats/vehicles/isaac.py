@@ -15,7 +15,7 @@ import numpy as np
 from rectbench.calibrations.assembling import camera_of, inverse
 from rectbench.calibrations.contract import CameraFormat, Given, PosedCamera
 from rectbench.calibrations.documents import Section, Source, agreed_size, errors_at
-from rectbench.calibrations.formats.named_cameras import Y_UP_Z_BACK, refuse_unread
+from rectbench.calibrations.formats.named_cameras import Y_UP_Z_BACK, refuse_unread, tell_missing
 from rectbench.calibrations.formats.vehicles.f_theta_keys import f_theta_camera
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
@@ -62,6 +62,7 @@ def _fisheye(file: Section, size: tuple[int, int]) -> Camera:
             f"{file.at(NOMINAL[0])} and Height are {nominal[0]:g}x{nominal[1]:g}; expected the proportions "
             f"of the image, {size[0]}x{size[1]}"
         )
+    tell_missing(file, ["cameraFisheyeMaxFOV"], "as far as the polynomial rises")
     poly = file.array(POLYNOMIAL, "a polynomial's coefficients", range(1, MAX_COEFFICIENTS))
     u, v = file.numbers("cameraFisheyeOpticalCentre", "two pixels", 2)
     fov = file.number("cameraFisheyeMaxFOV", "degrees") if "cameraFisheyeMaxFOV" in file else 0.0

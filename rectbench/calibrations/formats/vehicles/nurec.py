@@ -15,7 +15,7 @@ from collections.abc import Sequence
 from rectbench.calibrations.assembling import single
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents import Section, Source
-from rectbench.calibrations.formats.named_cameras import by_name, rig_of_named
+from rectbench.calibrations.formats.named_cameras import by_name, rig_of_named, tell_missing
 from rectbench.calibrations.formats.vehicles.f_theta_keys import f_theta_camera
 from rectbench.rigs.rig import Rig
 
@@ -54,6 +54,8 @@ def _read_posed(section: Section, given: Given) -> PosedCamera:
     key, by_distance = POLYNOMIALS[lens.choice("reference_poly", POLYNOMIALS)]
     poly = lens.array(key, "a polynomial's coefficients", range(1, MAX_COEFFICIENTS)).tolist()
     cx, cy = lens.numbers("principal_point", "two pixels", 2)
+    tell_missing(lens, ["linear_cde"], "1, 0, 0")
+    tell_missing(lens, ["max_angle"], "as far as the polynomial rises")
     linear = lens.numbers("linear_cde", "c, d, e", 3) if "linear_cde" in lens else (1.0, 0.0, 0.0)
     angle = math.degrees(lens.number("max_angle", "radians")) if "max_angle" in lens else None
     size = lens.size("resolution", given.size)
