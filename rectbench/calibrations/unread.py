@@ -20,6 +20,7 @@ from rectbench.calibrations.documents.entries import Entries
 from rectbench.calibrations.vocabulary import (
     COEFFICIENT,
     DISTORTION,
+    FLAGS,
     LENS,
     LENS_WORDS,
     LETTERS,
@@ -166,6 +167,8 @@ def _lens_or_pose(key: str, value: Any, path: str) -> Iterator[Part]:
 def _names_lens_or_pose(key: str, value: Any, words: frozenset[str]) -> bool:
     if isinstance(value, str) and finite_number(value) is None and LENS_WORDS.search(value):
         return True
+    if str(value).lower() in FLAGS:
+        return bool(DISTORTION.intersection(words))
     if TYPES.intersection(words):
         return finite_number(value) is not None
     if (LENS | POSE).intersection(words) or any(letter in LETTERS for letter in WORD.findall(key)):

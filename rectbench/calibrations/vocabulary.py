@@ -7,18 +7,8 @@ from functools import lru_cache
 
 DISTORTION = frozenset(
     (
-        *(
-            "distortion",
-            "distortions",
-            "distort",
-            "disto",
-            "dist",
-            "coeff",
-            "coeffs",
-            "coefs",
-            "coefficients",
-        ),
-        *("radial", "tangential", "poly", "polynomial", "prism", "fisheye"),
+        *("distortion", "distortions", "distort", "disto", "dist", "coeff", "coeffs", "coefs"),
+        *("coefficients", "radial", "tangential", "poly", "polynomial", "prism", "fisheye"),
     )
 )
 LENS = DISTORTION | frozenset(
@@ -47,6 +37,9 @@ COEFFICIENT = re.compile(r"k[1-6]|[pt][12]|s[1-4]|[dD]")
 TYPES = frozenset(("type", "kind"))
 """Words whose value tells: a number, or a word on a lens."""
 
+FLAGS = frozenset(("true", "false"))
+"""Values that say something under a lens's own words alone: `fisheye`, and not `calib_intrinsics`."""
+
 LENS_WORDS = re.compile(
     r"pinhole|fish.?eye|equi|kannala|radtan|radial|tangential|plumb|brown|conrady|rational|omni|mei\b|unified"
     r"|perspective|ucm|double.?sphere|scaramuzza|ocam|division|theta|poly|opencv",
@@ -56,35 +49,15 @@ LENS_WORDS = re.compile(
 
 OTHERS = frozenset(
     (
-        *(
-            "imu",
-            "gyro",
-            "gyroscope",
-            "accel",
-            "accelerometer",
-            "magnetometer",
-            "lidar",
-            "laser",
-            "gps",
-            "gnss",
-        ),
-        *("wheel", "vehicle", "essential", "fundamental", "error", "errors", "err", "rms", "rmse", "std"),
-        *("stddev", "deviation", "deviations", "covariance", "cov", "time", "timestamp", "date", "roi"),
-        *("points", "point", "corner", "corners", "board", "pattern", "target", "square", "color", "colour"),
-        *(
-            "noise",
-            "bias",
-            "vignette",
-            "response",
-            "topic",
-            "rostopic",
-            "per",
-            "view",
-            "views",
-            "fps",
-            "rate",
-        ),
-        *("flags", "criteria", "path", "file", "name", "label", "id", "version", "overlaps"),
+        *("imu", "gyro", "gyroscope", "accel", "accelerometer", "magnetometer", "lidar", "laser", "gps"),
+        *("gnss", "wheel", "vehicle", "essential", "fundamental", "error", "errors", "err", "rms", "rmse"),
+        *("std", "stddev", "sigma", "deviation", "deviations", "covariance", "cov", "time", "timestamp"),
+        *("date", "roi", "points", "point", "corner", "corners", "board", "pattern", "target", "square"),
+        *("color", "colour", "noise", "bias", "vignette", "response", "topic", "rostopic", "per", "view"),
+        *("views", "fps", "rate", "flags", "criteria", "path", "file", "name", "label", "id", "version"),
+        *("overlaps", "overlapping", "count", "threshold", "thr", "distance", "mask", "mocap", "marker"),
+        *("tracking", "loop", "keyframe", "viewer", "feature", "features", "optimizer", "optimization"),
+        *("estimate", "estimated"),
     )
 )
 """Words of keys that are about other things than the two lenses and how they stand."""

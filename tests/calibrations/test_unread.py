@@ -227,3 +227,29 @@ def test_what_was_told_of_files_already_is_not_told_again(
         load_rig(path)
         assert caplog.messages == []
     assert caplog.messages == lines
+
+
+@pytest.mark.parametrize(
+    ("name", "more"),
+    [
+        ("stella", "Tracking:\n  baseline_dist_thr: 0.1\nMapping:\n  baseline_dist_thr_ratio: 0.02\n"),
+        ("openvins-estimator", "calib_cam_extrinsics: true\ncalib_cam_intrinsics: true\n"),
+        ("vins", "loop_closure: 1\nimu_topic: /imu0\n"),
+        ("camodocal-vins-mono", "fisheye: 1\nfisheye_mask: mask.jpg\nestimate_extrinsic: 1\n"),
+        ("orbslam3", "IMU.T_b_c1: [1.0]\nViewer.ViewpointF: 500.0\n"),
+        ("okvis", "camera_extrinsics:\n  sigma_absolute_translation: 0.1\n"),
+        ("ros", "binning_x: 1\nroi: {x_offset: 3, do_rectify: false}\n"),
+        ("basalt", "T_mocap_world: [1.0]\n"),
+    ],
+)
+def test_what_programs_keep_beside_their_cameras_is_not_told(
+    tmp_path: Path, name: str, more: str, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Lines that real configurations of these programs have."""
+    path, *others = written(EXAMPLES[name], tmp_path)
+    if path.suffix == ".json":
+        path.write_text(json.dumps(json.loads(path.read_text()) | yaml.safe_load(more)))
+    else:
+        path.write_text(path.read_text() + more)
+    load_rig([path, *others], **EXAMPLES[name].options)
+    assert caplog.messages == []

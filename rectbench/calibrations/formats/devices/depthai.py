@@ -111,7 +111,7 @@ def _read_posed(section: Section, T: FloatArray, given: Given) -> PosedCamera:
         raise section.fault("cameraType", "0 (perspective) or 1 (fisheye)")
     lens = LENSES[int(kind)]
     size = section.sides("width", "height", given.size)
-    section.knows("specHfovDeg", "specTranslation")  # nominal, from the data sheet
+    section.knows("specHfovDeg", "specTranslation", "lensPosition")  # of the data sheet, and of the focus
     camera = opencv_camera(section, "intrinsicMatrix", "distortionCoeff", lens, size, section.where)
     return PosedCamera(section.where, camera, T)
 

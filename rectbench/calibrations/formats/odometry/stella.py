@@ -25,6 +25,7 @@ MODELS = {"perspective": "pinhole", "fisheye": "fisheye"}
 def _read(sources: Sequence[Source], given: Given) -> Rig:
     file = single(sources).document
     rectified = file.section("Camera", "the rectified camera")
+    file.knows("Tracking", "Mapping")
     size = rectified.sides("cols", "rows", given.size)
     focal = rectified.number("fx", "pixels")
     shift = rectified.number("focal_x_baseline", "pixels times metres")
@@ -32,7 +33,7 @@ def _read(sources: Sequence[Source], given: Given) -> Rig:
         raise rectified.fault("fx", "pixels above 0")
     if "StereoRectifier" not in file:
         return _rectified(rectified, size, shift / focal, given, sources[0].name)
-    rectified.knows("model")  # of the rectified images
+    rectified.knows("model", "fy", "c[xy]", "[kp]?")  # of the rectified images
     rectifier = file.section("StereoRectifier", "K, D and R of both cameras")
     left = _read_posed(rectifier, "left", size, 0.0)
     right = _read_posed(rectifier, "right", size, shift / focal)

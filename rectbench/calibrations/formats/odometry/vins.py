@@ -29,6 +29,7 @@ CAMERAS = ("cam0", "cam1")
 def _read(sources: Sequence[Source], given: Given) -> Rig:
     config = single([source for source in sources if _recognises(source)])
     file = config.document
+    file.knows("estimate_extrinsic")
     posed = []
     for name in CAMERAS:
         calibration = file.text(f"{name}_calib", "the name of the camera's file")

@@ -60,6 +60,7 @@ MAX_POLYNOMIAL = 20
 def read_posed(source: Source, given: Given) -> PosedCamera:
     """The camera in the file; it does not tell its pose."""
     file = source.document
+    file.knows("fisheye*", "estimate_extrinsic")  # VINS' mask, and whether it refines the pose
     kind = file.text("model_type", ", ".join(MODELS)).upper()
     if kind not in MODELS:
         raise file.fault("model_type", ", ".join(MODELS))

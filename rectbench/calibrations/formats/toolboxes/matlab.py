@@ -36,6 +36,12 @@ DISTORTION = (
     ("RadialDistortion", ("k1", "k2", "k3"), (2, 3)),
     ("TangentialDistortion", ("p1", "p2"), (2,)),
 )
+BESIDE = (
+    *("RotationVectors", "TranslationVectors", "RotationMatrices", "PatternExtrinsics", "Estimate*"),
+    *("NumRadialDistortionCoefficients", "FocalLength", "PrincipalPoint", "Skew", "IntrinsicMatrix"),
+)
+"""The board's poses and what was estimated; and what MATLAB derives from K, or K from."""
+
 UNIT_WORDS = {
     "m": ("m", "meters", "metres"),
     "cm": ("cm", "centimeters"),
@@ -51,6 +57,7 @@ POSE_AGREEMENT = 1e-6
 def _read(sources: Sequence[Source], given: Given) -> Rig:
     file = single(sources).document
     names = next(pair for pair in PAIRS if pair[0] in file)
+    file.knows("Rectif*")
     left, right = (_read_camera(file.section(name, "a MATLAB camera"), given) for name in names)
     where, T = _read_pose(file)
     return assembled(left, right, T, given, where, sources[0].name, _unit(file, names[0]))
@@ -67,6 +74,7 @@ def _read_pose(file: Section) -> tuple[str, FloatArray]:
     if "PoseCamera2" in file:
         section = file.section("PoseCamera2", "a rigidtform3d")
         T = _pose(section, "R" if "R" in section else "Rotation", "Translation")
+        file.knows("TranslationOfCamera2")
         if "RotationOfCamera2" in file:
             _check_agreement(file, T)
         return section.where, T
@@ -98,6 +106,7 @@ def _read_posed(source: Source, given: Given) -> PosedCamera:
 
 
 def _read_camera(section: Section, given: Given) -> Camera:
+    section.knows(*BESIDE)
     has_inner = isinstance(section.values.get("Intrinsics"), dict)
     lens = section.section("Intrinsics", "a camera") if has_inner else section
     is_fisheye = "MappingCoefficients" in lens

@@ -79,6 +79,7 @@ RECOGNISED = re.compile(
 def read_posed(source: Source, given: Given) -> PosedCamera:
     """The camera in the file, standing in mrcal's reference frame."""
     file = source.section(parse(_text(source), source.path))
+    file.knows("valid_intrinsics_region", "icam_intrinsics*", "optimization_inputs")
     key = next((key for key in LENS_KEYS if key in file), LENS_KEYS[0])
     model, names = _model(file, key)
     params = file.named("intrinsics", names)

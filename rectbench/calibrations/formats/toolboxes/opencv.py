@@ -181,7 +181,7 @@ def _read(sources: Sequence[Source], given: Given) -> Rig:
 def _compare_rectification(files: Files, T: FloatArray) -> None:
     """R1 and R2 of `stereoRectify` hold the rotation too, and P2 the length of the translation."""
     for document in files.documents:
-        document.knows("P1", "Q")
+        document.knows("P1", "Q", SIX)  # six numbers a view are the board's poses
         R1, R2 = (rotation_in(document, key) for key in ("R1", "R2"))
         if R1 is not None and R2 is not None:
             compare_rotations(document.at("R1"), R2.T @ R1, T[:3, :3], "R")
