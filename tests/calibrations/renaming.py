@@ -38,12 +38,13 @@ def changes(content: str | bytes) -> Iterator[tuple[str, bytes]]:
 
 
 def content_of(text: str) -> Any:
-    """The mapping in a YAML, JSON, XML or TOML text, or None where it holds none."""
+    """The mapping, or list of such, in a YAML, JSON, XML or TOML text, or None where it holds none."""
     try:
         content = parse(text)
     except Malformed:
         return None
-    return content if isinstance(content, dict) else None
+    is_table = isinstance(content, list) and all(isinstance(record, dict) for record in content)
+    return content if is_table or isinstance(content, dict) else None
 
 
 def keys_in(content: Any, path: Path = ()) -> Iterator[Path]:
@@ -65,7 +66,7 @@ def changed_documents(text: str) -> Iterator[tuple[str, str]]:
         for how, rename in RENAMED.items():
             yield f"{how} {path}", json.dumps(with_key(content, path, rename(str(path[-1]))))
         yield f"moved inwards {path}", json.dumps(with_key(content, path, "moved", inwards=True))
-        if len(path) > 1:
+        if len(path) > 1 and isinstance(content, dict):
             yield f"moved to the top {path}", json.dumps(with_key(content, path, str(path[-1]), to_top=True))
 
 

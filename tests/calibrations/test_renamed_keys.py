@@ -13,7 +13,7 @@ import pytest
 
 from rectbench import RectbenchError, Rig, load_rig
 from tests.calibrations.examples import EXAMPLES
-from tests.calibrations.renaming import changes
+from tests.calibrations.renaming import changed_documents, changed_texts, content_of
 from tests.calibrations.test_every_format import written
 
 RAYS = np.random.default_rng(3).normal(size=(40, 3)) * [1, 1, 0.6] + [0, 0, 0.5]
@@ -42,17 +42,20 @@ def silently_another(name: str, folder: Path, caplog: pytest.LogCaptureFixture) 
     expected = load_rig(paths, **example.options)
     told = set(caplog.messages)
     wrong = []
-    for file, content in example.files.items():
-        for what, changed in changes(content):
+    for file, text in example.files.items():
+        if isinstance(text, bytes):
+            continue  # an archive, whose keys are read as those of the same document are
+        changes = changed_texts(text) if content_of(text) is None else changed_documents(text)
+        for what, changed in changes:
             caplog.clear()
-            (folder / file).write_bytes(changed)
+            (folder / file).write_text(changed)
             try:
                 rig = load_rig(paths, **example.options)
             except RectbenchError:
                 continue
             if not set(caplog.messages) - told and not is_same(rig, expected):
                 wrong.append(f"{file}: {what}")
-        written(example, folder)
+        (folder / file).write_text(text)
     return wrong
 
 

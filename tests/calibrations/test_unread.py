@@ -23,6 +23,25 @@ TOLD = {
     "ros-fisheye-today": "K R in them, as ROS' calibrator of fisheyes writes them",
     "ros-fisheye-own-focal": "P has each camera's own focal length",
     "kitti-rectified": "holds 3 cameras; 0 and 1 are taken, others by `cameras=`",
+    "realsense-json-plain": "extrinsics: taken to lead from left to right",
+    **dict.fromkeys(
+        (
+            "metashape-fisheye",
+            "transforms",
+            "transforms-ngp",
+            "transforms-f-theta",
+            "openmvg",
+            "alicevision",
+            "alicevision-rig",
+        ),
+        "its scale is arbitrary unless something fixed it; taken to be in metres",
+    ),
+    "drive": "linear-c, linear-d, linear-e: missing; taken to be those of no stretch: 1, 0, 0",
+    "argoverse": "distortion_coefficients_: left out, as Argoverse's images are undistorted",
+    "argoverse-two": "k1, k2, k3: left out, as Argoverse's images are undistorted",
+    "left-right": "right.T: taken to take points of the frame that both share to the camera",
+    "simplestereo": "T: the baseline is 110, too long for metres; taken to be in mm",
+    "multical-master": "cameras.cam1.dist: four coefficients, taken for those of MultiCal's fisheye",
 }
 """Of which examples something is assumed, and what."""
 

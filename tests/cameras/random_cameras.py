@@ -26,9 +26,9 @@ MODELS = (
     "fisheye624",
     "cahvor",
     "division",
+    "f-theta",
     "tilted-pinhole",
     "radial-tangential",
-    "f-theta",
 )
 
 

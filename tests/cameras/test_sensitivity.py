@@ -28,9 +28,9 @@ CAMERAS = {
     | {"p0": 1e-3, "p1": -1e-3, "s0": 2e-3, "s1": -1e-4, "s2": 1e-3, "s3": 1e-4},
     "cahvor": FOCAL | {"alpha": 0.01, "beta": -0.02, "r0": 0.003, "r1": -0.05, "r2": 0.01},
     "division": FOCAL | {"k": -0.2},
+    "f-theta": {"cx": 322, "cy": 237, "c": 1.01, "d": 1e-3, "e": -2e-3, "angle_poly": [4e-3, 1e-7, 2e-9]},
     "tilted-pinhole": FOCAL | BROWN | {"k3": 0.01, "s1": 1e-3, "tau_x": 0.03, "tau_y": -0.02},
     "radial-tangential": FOCAL | BROWN | {"k3": 0.01, "k4": -0.002, "skew": 2.0},
-    "f-theta": {"cx": 322, "cy": 237, "c": 1.01, "d": 1e-3, "e": -2e-3, "angle_poly": [4e-3, 1e-7, 2e-9]},
 }
 ABOUT_90_DEG = Polynomial([np.pi / 2, 1.0])
 INVERSE_OCAM = {

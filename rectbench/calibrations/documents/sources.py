@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from rectbench.calibrations.documents.archives import MARK, parse_archive
-from rectbench.calibrations.documents.entries import as_entries, forget
+from rectbench.calibrations.documents.entries import Entries, as_entries, forget
 from rectbench.calibrations.documents.faults import one_line, shown
 from rectbench.calibrations.documents.parsing import Malformed, parse
 from rectbench.calibrations.documents.sections import Section, parse_document
@@ -27,6 +27,9 @@ SUFFIXES = {
     *(".npz",),
 }
 """What calibrations are called; in a folder, other files are not looked at."""
+
+RECORDS = "records"
+"""What errors call the list that a table is."""
 
 MAX_NAME = 200
 """Characters of a file name that a file may hold."""
@@ -111,13 +114,15 @@ class Source:
         self.companions.clear()
         for section in self.sections.values():
             forget(section.values)
+            if RECORDS in section.values:
+                section.values.get(RECORDS)  # cut up once, when the file was opened
 
     def _archive(self) -> Section:
         try:
             if len(self.content) <= MAX_BYTES:
-                return Section(self.path, "", as_entries(parse_archive(io.BytesIO(self.content))))
+                return Section(self.path, "", Entries(parse_archive(io.BytesIO(self.content))))
             with Path(self.path).open("rb") as stream:  # whose maps and images are not read
-                return Section(self.path, "", as_entries(parse_archive(stream)))
+                return Section(self.path, "", Entries(parse_archive(stream)))
         except (Malformed, OSError) as error:
             raise InvalidInput(f"{self.path}: {one_line(error)}; expected NumPy's K1, D1, ...") from None
 
@@ -132,7 +137,9 @@ class Source:
             return ()
         if not isinstance(content, list) or not all(isinstance(record, dict) for record in content):
             return ()
-        return tuple(self.section(record, f"[{place}].") for place, record in enumerate(content))
+        whole = self.section({RECORDS: content})
+        records = whole.section_of_list(RECORDS)
+        return tuple(records.section(place, "a record") for place in records.values)
 
     def table(self, mark: str) -> Section:
         """The lines `key mark words` by key: a word, or a list of several, without brackets and commas."""

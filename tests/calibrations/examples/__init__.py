@@ -31,11 +31,11 @@ EXAMPLES: dict[str, Example] = {
     **odometry.EXAMPLES,
     **toolboxes.EXAMPLES,
     **datasets.EXAMPLES,
-    **fisheye_dialects.EXAMPLES,
     **exports.EXAMPLES,
     **devices.EXAMPLES,
     **photogrammetry.EXAMPLES,
     **vehicles.EXAMPLES,
+    **fisheye_dialects.EXAMPLES,
 }
 """By the name of the format, with what tells its variants apart."""
 

@@ -71,7 +71,10 @@ def scaled(T: np.ndarray, scale: float) -> np.ndarray:
     return T
 
 
-METASHAPE_TERMS = ({"b2": 1.5, "k1": -0.28, "k2": 0.07, "p1": 2e-4, "p2": -3e-4}, {"k1": -0.27, "k3": 0.01})
+METASHAPE_TERMS = (
+    {"b2": 1.5, "k1": -0.28, "k2": 0.07, "k3": 1e-3, "k4": 2e-4, "p1": 2e-4, "p2": -3e-4},
+    {"k1": -0.03, "k3": 2e-4},
+)
 
 
 def metashape() -> Example:
@@ -87,9 +90,10 @@ def metashape() -> Example:
     )
     poses = [scaled(T, 1 / CHUNK_SCALE) for T in (T_BODY_LEFT, T_BODY_RIGHT)]
     one, two = METASHAPE_TERMS
-    left = {"xi": 0.0, "skew": one["b2"], "k1": one["k1"], "k2": one["k2"], "p1": one["p2"], "p2": one["p1"]}
+    left = {"skew": one["b2"], "p1": one["p2"], "p2": one["p1"]}
+    left |= {name: one[name] for name in ("k1", "k2", "k3", "k4")}
     cameras = (
-        Camera("unified", SIZE, dict(zip(FOCAL, FOCAL1, strict=True)) | left),
+        Camera("radial-tangential", SIZE, dict(zip(FOCAL, FOCAL1, strict=True)) | left),
         Camera("pinhole", SIZE, dict(zip(FOCAL, FOCAL2, strict=True)) | two),
     )
     return Example({"cameras.xml": metashape_text(sensors, poses, component)}, rig(*cameras))
@@ -230,7 +234,7 @@ def openmvg() -> Example:
 
 
 SENSOR_MM, PIXEL_RATIO = 36.0, 1.01
-BROWN1, BROWN2 = [-0.2, 0.05, -0.01, 3e-4, -2e-4], [-0.21, 0.04, 0.0, -1e-4, 2e-4]
+BROWN1, BROWN2 = [-0.2, 0.05, 1e-4, 3e-4, -2e-4], [-0.21, 0.04, 0.0, -1e-4, 2e-4]
 BROWN = ("k1", "k2", "k3", "p1", "p2")
 
 

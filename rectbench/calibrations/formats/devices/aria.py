@@ -16,7 +16,12 @@ from collections.abc import Sequence
 from rectbench.calibrations.assembling import camera_of, rigid, single
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents import Section, Source
-from rectbench.calibrations.named_cameras import by_name, quaternion_rotation, refuse_unread, rig_of_named
+from rectbench.calibrations.formats.named_cameras import (
+    by_name,
+    quaternion_rotation,
+    refuse_unread,
+    rig_of_named,
+)
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig
 from rectbench.types import FloatArray
@@ -39,16 +44,11 @@ def _read(sources: Sequence[Source], given: Given) -> Rig:
     entries = source.document.section_of_list(CAMERAS)
     sections = [entries.section(place, "a camera") for place in entries.values]
     cameras = by_name((section.text("Label", "the camera's name"), section) for section in sections)
-    ordered = dict(sorted(cameras.items(), key=lambda item: _turn(item[0])))
 
     def read(section: Section) -> PosedCamera:
         return _read_posed(section, _size(source.document, section, sections.index(section), given))
 
-    return rig_of_named(source, ordered, read, given, unit="m")
-
-
-def _turn(label: str) -> int:
-    return PAIR.index(label) if label in PAIR else len(PAIR)
+    return rig_of_named(source, cameras, read, given, "m", [PAIR])
 
 
 def _read_posed(section: Section, size: tuple[int, int]) -> PosedCamera:
@@ -57,6 +57,7 @@ def _read_posed(section: Section, size: tuple[int, int]) -> PosedCamera:
     refuse_unread(section, ())
     projection = section.section("Projection", "Name and Params")
     projection.only(("Name", "Params", "Description", "ProjectionModel"))
+    projection.knows("Description", "ProjectionModel")  # of the names in words
     name = projection.choice("Name", MODELS)
     model, names = MODELS[name]
     params = projection.named("Params", names)

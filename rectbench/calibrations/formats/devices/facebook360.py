@@ -26,7 +26,7 @@ import numpy as np
 from rectbench.calibrations.assembling import camera_of, rigid, single
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents import Section, Source, errors_at
-from rectbench.calibrations.named_cameras import by_name, rig_of_named, told_unit
+from rectbench.calibrations.formats.named_cameras import by_name, rig_of_named, told_unit
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig, checked_rotation
 from rectbench.types import FloatArray

@@ -13,9 +13,8 @@ rsutil.h). Pixel (0, 0) is the centre of a pixel.
 | Ftheta | field-of-view |
 
 Inverse Brown Conrady with coefficients, which leads from the image to the ideal plane, is refused, as are
-the tangential terms of the modified one. Left and right are the two streams, Fisheye 1 before 2
-and Infrared 1 before 2; of more than two it is asked which. A stream of several sizes wants the one given
-beside the file.
+the tangential terms of the modified one. Left and right are Fisheye 1 and 2, or Infrared 1 and 2, or the
+streams asked for by their names. A stream of several sizes wants the one given beside the file.
 """
 
 from __future__ import annotations
@@ -25,12 +24,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from rectbench.calibrations.assembling import Pair, assembled, chosen, inverse, rigid, single
+from rectbench.calibrations.assembling import Pair, assembled, inverse, rigid, single
 from rectbench.calibrations.contract import Given, RigFormat
 from rectbench.calibrations.documents import Section, Source, errors_at, finite_number, shown
-from rectbench.calibrations.formats.devices.realsense_lens import pair_first, realsense_camera
+from rectbench.calibrations.formats.devices.realsense_lens import realsense_camera, stereo_pairs
+from rectbench.calibrations.formats.named_cameras import pair_of
 from rectbench.cameras import Camera
-from rectbench.errors import InvalidInput, argument
+from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig, checked_rotation
 from rectbench.types import FloatArray
 
@@ -55,7 +55,7 @@ def _read(sources: Sequence[Source], given: Given) -> Rig:
         where = f'{source.path}: Extrinsic from "{names[0]}" to "{names[1]}"'
         return assembled(left, right, _pose(source, *names), given, where, source.name, unit="m")
 
-    return rig_of(chosen(pair_first(list(streams)), given, source.path, rig_of))
+    return rig_of(pair_of(list(streams), stereo_pairs(streams), given, source.path, rig_of))
 
 
 def _streams(source: Source) -> dict[str, list[Section]]:
@@ -95,7 +95,7 @@ def _camera(blocks: list[Section], name: str, given: Given) -> Camera:
         file = blocks[0].file
         raise InvalidInput(
             f'{file}: "{name}" has {len(fitting)} intrinsics'
-            f"{' of that size' if given.size else ''}; expected `{argument('size')}` one of {sizes}"
+            f"{' of that size' if given.size else ''}; expected `size=` one of {sizes}"
         )
     section = fitting[0]
     return realsense_camera(section, FIELDS, _size(section))

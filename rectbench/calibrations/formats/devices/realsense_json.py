@@ -5,8 +5,8 @@ The tools of librealsense write none; people dump what pyrealsense2 gives: for e
 the top or in a section such as `intrinsics`, and mappings with a `rotation` and a `translation`, metres.
 The rotation is that of rs2_extrinsics: nine numbers by columns, or a matrix of three rows. One that is
 called `a_to_b`, or has `from` and `to`, takes points of a to b; any other one is taken to lead from the
-first stream to the second, which is told. Left and right are the two streams, Fisheye 1 before 2 and
-Infrared 1 before 2; of more than two it is asked which.
+first stream to the second, which is told. Fisheye 1 and 2, or Infrared 1 and 2, are left and right, unless
+others are asked for.
 """
 
 from __future__ import annotations
@@ -15,11 +15,11 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from rectbench.calibrations.assembling import Pair, assembled, chosen, inverse, rigid, single
+from rectbench.calibrations.assembling import Pair, assembled, inverse, rigid, single
 from rectbench.calibrations.contract import Given, RigFormat
-from rectbench.calibrations.documents import Section, Source, errors_at, tell
-from rectbench.calibrations.formats.devices.realsense_lens import pair_first, realsense_camera
-from rectbench.calibrations.named_cameras import by_name
+from rectbench.calibrations.documents import Section, Source, errors_at, one_line, tell
+from rectbench.calibrations.formats.devices.realsense_lens import realsense_camera, stereo_pairs
+from rectbench.calibrations.formats.named_cameras import by_name, pair_of
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig, checked_rotation
@@ -47,7 +47,7 @@ def _read(sources: Sequence[Source], given: Given) -> Rig:
         T = T if order == list(names) else inverse(T)
         return assembled(left, right, T, given, where, source.name, unit="m")
 
-    return rig_of(chosen(pair_first(list(streams)), given, source.path, rig_of))
+    return rig_of(pair_of(list(streams), stereo_pairs(streams), given, source.path, rig_of))
 
 
 def _mappings(section: Section, name: str, depth: int) -> Iterator[tuple[str, Section]]:
@@ -83,7 +83,7 @@ def _pose(
             f"{source.path}: has no extrinsics of {first} and {second}; expected rotation and translation"
         )
     section = poses[0][1]
-    tell(f"{section.where}: taken to lead from {first} to {second}")
+    tell(f"{section.where}: taken to lead from {one_line(first)} to {one_line(second)}")
     return section.where, _transformation(section)
 
 

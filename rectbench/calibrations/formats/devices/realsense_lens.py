@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
-from rectbench.calibrations.assembling import camera_of
+from rectbench.calibrations.assembling import Pair, camera_of
 from rectbench.calibrations.documents import Section, shown
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
@@ -23,11 +23,10 @@ PLAIN = ("None", "Brown Conrady", "Modified Brown Conrady", "Inverse Brown Conra
 DISTORTIONS = (*PLAIN, "Kannala Brandt4", "Ftheta")
 
 
-def pair_first(names: Sequence[str]) -> list[str]:
-    """The streams with a stereo pair, where there is one, before the others."""
-    spelt = {name: _spelt(name) for name in names}
-    pair = next((pair for pair in PAIRS if set(pair) <= set(spelt.values())), ())
-    return sorted(names, key=lambda name: pair.index(spelt[name]) if spelt[name] in pair else len(pair))
+def stereo_pairs(names: Iterable[str]) -> list[Pair]:
+    """The stereo pairs among the streams."""
+    spelt = {_spelt(name): name for name in names}
+    return [(spelt[left], spelt[right]) for left, right in PAIRS if left in spelt and right in spelt]
 
 
 def _spelt(word: str) -> str:

@@ -19,8 +19,7 @@ the versions:
 | fisheye or fisheye4, fisheye1 | kannala-brandt, field-of-view |
 
 Equidistant cameras, whose radius AliceVision's versions take differently, panoramas and 3DEqualizer's
-undistortions are refused. The views' images are the cameras' names; of more than two with poses it is asked
-which are left and right.
+undistortions are refused. The cameras are the views with poses, and go by their images' names.
 """
 
 from __future__ import annotations
@@ -32,8 +31,14 @@ import numpy as np
 
 from rectbench.calibrations.assembling import camera_of, inverse, rigid, single
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
-from rectbench.calibrations.documents import Section, Source, errors_at, tell
-from rectbench.calibrations.named_cameras import by_name, refuse_unread, rig_of_named, told_scale
+from rectbench.calibrations.documents import Section, Source, errors_at
+from rectbench.calibrations.formats.named_cameras import (
+    by_name,
+    refuse_unread,
+    rig_of_named,
+    tell_missing,
+    told_scale,
+)
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig, checked_rotation
@@ -67,10 +72,7 @@ INTRINSIC_KEYS = (
     *("distortionInitializationMode", "distortionParams", "distortionLocked", "distortionType"),
     *("undistortionOffset", "undistortionParams", "undistortionType"),
 )
-INDEPENDENT = "isPoseIndependant"
-"""Whether a view of a rig has a pose of its own; AliceVision's default is that it has."""
-
-VIEW_KEYS = ("viewId", "poseId", "rigId", "subPoseId", "intrinsicId", INDEPENDENT, "frameId")
+VIEW_KEYS = ("viewId", "poseId", "rigId", "subPoseId", "intrinsicId", "isPoseIndependant", "frameId")
 """Those of every version's intrinsics and views that say anything of a lens or a pose."""
 
 Version = tuple[float, ...]
@@ -119,13 +121,15 @@ def _views(file: Section) -> list[tuple[str, _View]]:
     found = []
     for number, view in _by_number(file, "views", "viewId").items():
         refuse_unread(view, VIEW_KEYS)
+        view.knows(*VIEW_KEYS)
         pose = poses.get(_number(view, "poseId"))
         if pose is None:
             continue
         T = _transform(pose.section("pose", "a pose").section("transform", "rotation and center"))
-        if "rigId" in view and INDEPENDENT not in view:
-            tell(f"{file.file}: {INDEPENDENT} of a rig's view is missing; taken to be true, its pose its own")
-        if "rigId" in view and str(view.values.get(INDEPENDENT, "true")).lower() in ("false", "0"):
+        is_of_rig = "rigId" in view and str(view.values.get("isPoseIndependant", "true")).lower() in "false0"
+        if "rigId" in view:
+            tell_missing(view, ["isPoseIndependant"], "true, so that the view's pose is its own")
+        if is_of_rig:
             T = _sub_pose(view, rigs) @ T
         elif "subPoseId" in view and "rigId" not in view:
             raise view.fault("rigId", "the rig of its subPoseId")
@@ -152,10 +156,9 @@ def _transform(section: Section) -> FloatArray:
 
 def _camera(section: Section, version: Version, given: Given) -> Camera:
     refuse_unread(section, INTRINSIC_KEYS)
+    section.knows(*INTRINSIC_KEYS)
     kind = section.choice("type", TYPES)
-    section.knows("*nitial*", "*Locked")  # what a solver started from, and may not move
-    stated = "distortionType" in section
-    distortion = section.choice("distortionType", DISTORTIONS) if stated else TYPES[kind]
+    distortion = section.choice("distortionType", DISTORTIONS) if "distortionType" in section else TYPES[kind]
     if distortion != TYPES[kind] and kind != "pinhole":
         raise section.fault("distortionType", f"{TYPES[kind]}, as the type {kind} has it")
     if section.values.get("undistortionType", "none") != "none" or section.values.get("undistortionParams"):
@@ -188,22 +191,16 @@ def _focal(section: Section, version: Version, size: tuple[int, int]) -> tuple[f
     if version < (1, 2, 2):
         both = section.array("pxFocalLength", "one or two numbers of pixels", (1, 2)).tolist()
         return both[0], both[-1]
-    sensor = _told(section, "sensorWidth", "mm", 36.0)
+    tell_missing(section, ["sensorWidth"], "36 mm")
+    tell_missing(section, ["pixelRatio"], "1")
+    sensor = section.number("sensorWidth", "mm") if "sensorWidth" in section else 36.0
     if not sensor > 0:
         raise section.fault("sensorWidth", "mm above 0")
     fx = section.number("focalLength", "mm") / sensor * size[0]
-    ratio = _told(section, "pixelRatio", "a number above 0", 1.0)
+    ratio = section.number("pixelRatio", "a number above 0") if "pixelRatio" in section else 1.0
     if not ratio > 0:
         raise section.fault("pixelRatio", "a number above 0")
     return fx, fx * ratio if version >= (1, 2, 5) else fx / ratio
-
-
-def _told(section: Section, key: str, expected: str, default: float) -> float:
-    """The number under `key`, or AliceVision's own default, which is told."""
-    if key in section:
-        return section.number(key, expected)
-    tell(f"{section.at(key)} is missing; taken to be {default:g}")
-    return default
 
 
 FORMAT = RigFormat(

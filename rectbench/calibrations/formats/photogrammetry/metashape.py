@@ -8,14 +8,13 @@ which are the p2, p1 of OpenCV.
 
 | sensor | here |
 |---|---|
-| frame with k1 k2 k3 p1 p2 | pinhole; with b2, and no k3, unified with ξ = 0 |
+| frame with k1 k2 k3 p1 p2 | pinhole; with b2 or k4, radial-tangential |
 | fisheye (equidistant), the same terms of the point at the radius θ | thin-prism-fisheye |
 | fisheye without p1, p2 | kannala-brandt, where b2 is its skew |
 | equisolid_fisheye without terms | equisolid |
 
-The frame's k4, p3 and p4 have no place here. Of a multi-camera system only cameras with a transform of
-their own are read. Cameras go by their labels; of more than two that are aligned it is asked which are left
-and right.
+p3 and p4 have no place here. Of a multi-camera system only cameras with a transform of their own are read.
+The cameras are those that are aligned, and go by their labels.
 """
 
 from __future__ import annotations
@@ -30,9 +29,9 @@ from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents import Section, Source, agreed_size, one_line, shown
 from rectbench.calibrations.documents.elements import parse_elements
 from rectbench.calibrations.documents.parsing import Malformed
-from rectbench.calibrations.named_cameras import by_name, rig_of_named, told_scale
+from rectbench.calibrations.formats.named_cameras import by_name, rig_of_named, told_scale
 from rectbench.cameras import Camera
-from rectbench.errors import InvalidInput, argument
+from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig
 
 PARAMETERS = ("f", "cx", "cy", "b1", "b2", "k1", "k2", "k3", "k4", "p1", "p2", "p3", "p4")
@@ -81,7 +80,7 @@ def _check_slaves(chunk: _Chunk, given: Given) -> None:
         if given.cameras is None or name in given.cameras:
             raise InvalidInput(
                 f"{chunk.file}: camera {shown(name)} is a slave of a multi-camera system and has no "
-                f"transform of its own; expected `{argument('cameras')}` two that have one"
+                "transform of its own; expected `cameras=` two that have one"
             )
 
 
@@ -183,13 +182,11 @@ def _lens(section: Section, kind: str, n: dict[str, float]) -> tuple[str, dict[s
         return "kannala-brandt", radial | {"skew": n["b2"]}
     if kind in FISHEYES and not skewed:
         return "thin-prism-fisheye", radial | tangential
-    if kind == "frame" and n["k4"] == 0:
+    if kind == "frame" and (skewed or n["k4"]):
+        return "radial-tangential", radial | tangential | {"skew": n["b2"]}
+    if kind == "frame":
         del radial["k4"]
-        if not skewed:
-            return "pinhole", radial | tangential
-        if n["k3"] == 0:
-            del radial["k3"]
-            return "unified", radial | tangential | {"xi": 0.0, "skew": n["b2"]}
+        return "pinhole", radial | tangential
     given = ", ".join(f"{name} = {n[name]:g}" for name in ("b2", *radial, "k4", "p1", "p2") if n[name])
     raise InvalidInput(f"{section.where} is a {kind} with {given}, no lens here; expected fewer terms")
 

@@ -10,8 +10,7 @@ later the number alone. Pixel (0, 0) is the centre of a pixel, as the images are
 | pinhole, pinhole_radial_k1, pinhole_radial_k3, pinhole_brown_t2 (k1 k2 k3 t1 t2) | pinhole |
 | fisheye | kannala-brandt |
 
-Spherical images are refused. The views' images are the cameras' names; of more than two with poses it is
-asked which are left and right.
+Spherical images are refused. The cameras are the views that have poses, and go by their images' names.
 """
 
 from __future__ import annotations
@@ -23,7 +22,8 @@ from typing import Any
 from rectbench.calibrations.assembling import camera_of, rigid, single
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents import Section, Source
-from rectbench.calibrations.named_cameras import by_name, rig_of_named, told_scale
+from rectbench.calibrations.documents.entries import take
+from rectbench.calibrations.formats.named_cameras import by_name, rig_of_named, told_scale
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig
@@ -100,14 +100,11 @@ def _class_names(file: Section) -> dict[float, str]:
     return names
 
 
-def _object(entry: Section) -> Section:
-    wrapper = entry.section("value", "an object").section("ptr_wrapper", "a pointer")
-    return wrapper.section("data", "an object")
-
-
 def _data(entry: Section) -> Section:
     """The object of an entry, with the keys of its bases among its own."""
-    data = _object(entry)
+    wrapper = entry.section("value", "an object").section("ptr_wrapper", "a pointer")
+    data = wrapper.section("data", "an object")
+    take(data.values)  # as all of its keys are looked at
     return Section(data.file, data.key, _flat(data.values))
 
 
@@ -115,7 +112,7 @@ def _flat(values: Any) -> dict[str, Any]:
     flat: dict[str, Any] = {}
     for key, value in values.items():
         is_base = key.startswith(BASE) and key[len(BASE) :].isdigit() and isinstance(value, dict)
-        flat |= _flat(value) if is_base else {key: value}
+        flat |= _flat(values[key]) if is_base else {key: value}
     return flat
 
 
@@ -127,7 +124,6 @@ def _camera(entry: Section, names: dict[float, str], given: Given) -> Camera:
     model, key, coefficients = MODELS[kind]
     data = _data(entry)
     data.only((*LENS, *((key,) if key else ())))
-    _object(entry).knows("*")  # of which there are no others
     focal = data.number("focal_length", "pixels")
     cx, cy = data.numbers("principal_point", "two pixels", 2)
     params = {"fx": focal, "fy": focal, "cx": cx, "cy": cy}

@@ -12,8 +12,7 @@ Translations are divided by `applied_scale`; their scale is arbitrary, which is 
 | OPENCV_FISHEYE, or `is_fisheye`: k1 k2 k3 k4 | kannala-brandt |
 | `ftheta_p0` ... `ftheta_p4`, the angle by powers of the pixels | f-theta |
 
-The frames' images are the cameras' names, or the last part of one; of more than two it is asked which are
-left and right.
+The frames' images are the cameras' names, or the last part of one.
 """
 
 from __future__ import annotations
@@ -24,11 +23,12 @@ from collections.abc import Sequence
 from rectbench.calibrations.assembling import camera_of, single
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents import Section, Source, shown, tell
-from rectbench.calibrations.named_cameras import (
+from rectbench.calibrations.formats.named_cameras import (
     Y_UP_Z_BACK,
     by_name,
     refuse_unread,
     rig_of_named,
+    tell_missing,
     told_scale,
 )
 from rectbench.cameras import Camera
@@ -39,10 +39,16 @@ PERSPECTIVE = ("SIMPLE_PINHOLE", "PINHOLE", "SIMPLE_RADIAL", "RADIAL", "OPENCV")
 MODELS = (*PERSPECTIVE, "OPENCV_FISHEYE")
 ORDERS = {"pinhole": ("k1", "k2", "k3", "p1", "p2"), "kannala-brandt": ("k1", "k2", "k3", "k4")}
 EXPECTED = {
-    **{"SIMPLE_PINHOLE": (), "PINHOLE": (), "SIMPLE_RADIAL": ("k1",), "RADIAL": ("k1", "k2")},
-    **{"OPENCV": ("k1", "k2", "p1", "p2"), "OPENCV_FISHEYE": ("k1", "k2", "k3", "k4")},
+    "SIMPLE_RADIAL": ("k1",),
+    "RADIAL": ("k1", "k2"),
+    "OPENCV": ("k1", "k2", "p1", "p2"),
+    "OPENCV_FISHEYE": ("k1", "k2", "k3", "k4"),
 }
-"""The coefficients that both programs write of each of COLMAP's models."""
+UNSTATED = {"pinhole": EXPECTED["OPENCV"], "kannala-brandt": EXPECTED["OPENCV_FISHEYE"]}
+"""The coefficients that a model has, and a lens with any whose model is not stated.
+
+One that is missing is 0 to nerfstudio.
+"""
 
 DISTORTION = ("k1", "k2", "k3", "k4", "p1", "p2")
 F_THETA = tuple(f"ftheta_p{power}" for power in range(6))
@@ -72,7 +78,6 @@ AGREEMENT = 1e-3
 def _read(sources: Sequence[Source], given: Given) -> Rig:
     source = single(sources)
     file = source.document
-    file.knows("applied_transform")  # of the world, and in the poses already
     entries = file.section_of_list("frames")
     frames = [entries.section(place, "a frame") for place in entries.values]
     cameras = by_name((frame.text("file_path", "the image's name"), frame) for frame in frames)
@@ -93,6 +98,7 @@ def _lens(file: Section, frame: Section) -> Section:
     """The keys of the frame's lens, its own and the file's, which may not disagree."""
     for section in (file, frame):
         refuse_unread(section, (*LENS, *OTHER_KEYS))
+        section.knows(*LENS, *OTHER_KEYS)
     values = {key: file.values[key] for key in LENS if key in file}
     for key in LENS:
         if key in frame and values.setdefault(key, frame.values[key]) != frame.values[key]:
@@ -105,27 +111,23 @@ def _camera(lens: Section, given: Given) -> Camera:
         if lens.values.get(key):
             raise InvalidInput(f"{lens.at(key)} is no lens; expected a perspective or fisheye image")
     size = lens.sides("w", "h", given.size)
-    cx, cy = (_centre(lens, key, side) for key, side in zip(("cx", "cy"), size, strict=True))
+    cx, cy = (
+        lens.number(key, "pixels") if key in lens else side / 2
+        for key, side in zip(("cx", "cy"), size, strict=True)
+    )
+    tell_missing(lens, ("cx", "cy"), "the image's centre")
     centre = {"cx": cx - 0.5, "cy": cy - 0.5}
     if F_THETA[0] in lens:
         return camera_of(lens.where, "f-theta", size, centre | {"angle_poly": _angle_poly(lens)})
-    name = _model(lens)
-    model = "kannala-brandt" if name == "OPENCV_FISHEYE" else "pinhole"
+    model = _model(lens)
     fx = _focal(lens, "x", size[0])
     if fx is None:
         raise lens.fault("fl_x", "the focal length, pixels, or camera_angle_x")
     fy = _focal(lens, "y", size[1])
     if fy is None:
-        tell(f"{lens.file}: fl_y is missing; taken to be as fl_x, the pixels square")
+        tell_missing(lens, ["fl_y"], "fl_x")
     focal = {"fx": fx, "fy": fx if fy is None else fy}
-    return camera_of(lens.where, model, size, centre | focal | _distortion(lens, name, model))
-
-
-def _centre(lens: Section, key: str, side: int) -> float:
-    if key in lens:
-        return lens.number(key, "pixels")
-    tell(f"{lens.file}: {key} is missing; taken to be the middle of the image, {side / 2:g}")
-    return side / 2
+    return camera_of(lens.where, model, size, centre | focal | _distortion(lens, model))
 
 
 def _angle_poly(lens: Section) -> list[float]:
@@ -139,14 +141,11 @@ def _angle_poly(lens: Section) -> list[float]:
 
 
 def _model(lens: Section) -> str:
-    """COLMAP's name of the lens; of one that is not named, the most general of its kind."""
     name = lens.choice("camera_model", MODELS) if "camera_model" in lens else ""
     is_fisheye = lens.values.get("is_fisheye", name == "OPENCV_FISHEYE")
     if not isinstance(is_fisheye, bool) or (name and is_fisheye != (name == "OPENCV_FISHEYE")):
         raise lens.fault("is_fisheye", f"true or false, as camera_model {shown(name)} has it")
-    if not name and "is_fisheye" not in lens:
-        tell(f"{lens.file}: camera_model is missing; taken for a perspective lens, no fisheye")
-    return name or ("OPENCV_FISHEYE" if is_fisheye else "OPENCV")
+    return "kannala-brandt" if is_fisheye else "pinhole"
 
 
 def _focal(lens: Section, axis: str, side: int) -> float | None:
@@ -159,16 +158,17 @@ def _focal(lens: Section, axis: str, side: int) -> float | None:
         raise lens.fault(f"camera_angle_{axis}", "a field of view below 180°, radians")
     seen = None if angle is None else 0.5 * side / math.tan(0.5 * angle)
     if stated is not None and seen is not None and abs(seen - stated) > AGREEMENT * abs(stated):
-        at = lens.at(f"fl_{axis}")
-        tell(f"{at} is {stated:.6g} px, where the field of view makes it {seen:.6g} px; the former counts")
+        tell(
+            f"{lens.at(f'fl_{axis}')} is {stated:.6g} px, where the field of view makes it {seen:.6g} px; "
+            "the former counts"
+        )
     return seen if stated is None else stated
 
 
-def _distortion(lens: Section, colmap_name: str, model: str) -> dict[str, float]:
-    missing = " ".join(name for name in EXPECTED[colmap_name] if name not in lens)
-    if missing:
-        tell(f"{lens.file}: {missing} of a lens missing; taken to be 0")
+def _distortion(lens: Section, model: str) -> dict[str, float]:
     params = {name: lens.number(name, "a coefficient") for name in DISTORTION if name in lens}
+    expected = EXPECTED.get(str(lens.values.get("camera_model")), UNSTATED[model] if params else ())
+    tell_missing(lens, expected, "0")
     for name, number in params.items():
         if number != 0 and name not in ORDERS[model]:
             raise lens.fault(name, f"0, as {model} has no {name} here")

@@ -17,8 +17,8 @@ from rectbench.calibrations.assembling import inverse, rigid, single
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents import Section, Source, tell
 from rectbench.calibrations.documents.numbers import flat_numbers
+from rectbench.calibrations.formats.named_cameras import rig_of_named
 from rectbench.calibrations.formats.toolboxes.opencv import opencv_camera
-from rectbench.calibrations.named_cameras import rig_of_named
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig
 
@@ -74,7 +74,7 @@ def _lens(section: Section) -> str:
         return "fisheye"
     is_fisheye = model == "standard" and len(flat_numbers(section.values.get("dist")) or ()) == FEWEST
     if is_fisheye:
-        tell(f"{section.file}: `dist` of four coefficients is taken for that of MultiCal's fisheye")
+        tell(f"{section.at('dist')}: four coefficients, taken for those of MultiCal's fisheye")
     return "fisheye" if is_fisheye else "pinhole"
 
 

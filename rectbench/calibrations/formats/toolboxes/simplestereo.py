@@ -15,8 +15,8 @@ import numpy as np
 from rectbench.calibrations.assembling import LONGEST_BASELINE_M, assembled, rigid, single
 from rectbench.calibrations.contract import Given, RigFormat
 from rectbench.calibrations.documents import Section, Source
+from rectbench.calibrations.formats.named_cameras import told_unit
 from rectbench.calibrations.formats.toolboxes.opencv import COUNTS, opencv_camera
-from rectbench.calibrations.named_cameras import told_unit
 from rectbench.cameras import Camera
 from rectbench.rigs.rig import Rig
 
@@ -29,6 +29,7 @@ def _read(sources: Sequence[Source], given: Given) -> Rig:
     source = single(sources)
     file = source.document
     file.only((*(f"{key}{number}" for number in (1, 2) for key in CAMERA_KEYS), "R", "T", *DERIVED))
+    file.knows(*DERIVED)
     left, right = (_read_camera(file, number, given) for number in (1, 2))
     t = file.array("T", "a translation", (3,))
     where = file.at("T")

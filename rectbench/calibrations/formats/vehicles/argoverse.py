@@ -9,8 +9,8 @@
 The tables of Argoverse 2 are Feather files; as JSON they are lists of rows, or pandas' columns. The images
 of both are undistorted already (argoverse-api #81, av2-api #219), so the distortion in the files, that of
 the cameras, is no part of the lens, which is told. Argoverse 1 tells no image size: 1920x1200 for its ring
-cameras, 2464x2056 for its stereo pair. Pixel (0, 0) is the centre of a pixel. Of more than two cameras it is
-asked which are left and right, such as stereo_front_left and stereo_front_right.
+cameras, 2464x2056 for its stereo pair. Pixel (0, 0) is the centre of a pixel. stereo_front_left and right
+are left and right, unless others are asked for.
 """
 
 from __future__ import annotations
@@ -21,15 +21,16 @@ from typing import Any
 from rectbench.calibrations.assembling import camera_of, rigid, single
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents import Section, Source, tell
-from rectbench.calibrations.named_cameras import by_name, quaternion_rotation, rig_of_named
+from rectbench.calibrations.formats.named_cameras import by_name, quaternion_rotation, rig_of_named
 from rectbench.cameras import Camera
-from rectbench.errors import InvalidInput, argument
+from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig
 from rectbench.types import FloatArray
 
 FIRST = "camera_data_"
 SIZES = {"ring": (1920, 1200), "stereo": (2464, 2056)}
 PREFIX = "image_raw_"
+PAIR = ("stereo_front_left", "stereo_front_right")
 LENS, POSE = {"sensor_name", "fx_px", "cx_px"}, {"sensor_name", "qw", "tx_m"}
 
 
@@ -43,11 +44,7 @@ def _read(sources: Sequence[Source], given: Given) -> Rig:
     cameras = by_name(
         (section.text("key", "the camera's name").removeprefix(PREFIX), section) for section in sections
     )
-    return rig_of_named(source, _stereo_first(cameras), lambda entry: _read_first(entry, given), given, "m")
-
-
-def _stereo_first(cameras: dict[str, Section]) -> dict[str, Section]:
-    return dict(sorted(cameras.items(), key=lambda item: not item[0].startswith("stereo")))
+    return rig_of_named(source, cameras, lambda entry: _read_first(entry, given), given, "m", [PAIR])
 
 
 def _read_first(entry: Section, given: Given) -> PosedCamera:
@@ -63,9 +60,7 @@ def _read_first(entry: Section, given: Given) -> PosedCamera:
     _tell(value, value.values.get("distortion_coefficients_"), "distortion_coefficients_")
     size = given.size or SIZES.get(name.partition("_")[0])
     if size is None:
-        raise InvalidInput(
-            f"{value.where}: tells no image size; expected `{argument('size')}` beside the file"
-        )
+        raise InvalidInput(f"{value.where}: tells no image size; expected `size=` beside the file")
     pose = value.section("vehicle_SE3_camera_", "rotation and translation")
     rotation = pose.section("rotation", "coefficients")
     T = rigid(
@@ -91,7 +86,7 @@ def _second(lenses: list[Source], sources: Sequence[Source], given: Given) -> Ri
             raise InvalidInput(f"{poses[0].path}: has no sensor {name}; expected its pose in the vehicle")
         return PosedCamera(row.where, _read_lens(row, given), _read_pose(places[name]))
 
-    return rig_of_named(lenses[0], _stereo_first(rows), read, given, "m")
+    return rig_of_named(lenses[0], rows, read, given, "m", [PAIR])
 
 
 def _read_lens(row: Section, given: Given) -> Camera:
@@ -108,7 +103,7 @@ def _read_pose(row: Section) -> FloatArray:
 
 def _tell(section: Section, distortion: Any, key: str) -> None:
     if isinstance(distortion, list) and any(distortion):
-        tell(f"{section.file}: {key}: left out, as Argoverse's images are undistorted")
+        tell(f"{section.at(key)}: left out, as Argoverse's images are undistorted")
 
 
 def _rows(source: Source, marks: set[str]) -> list[Section]:

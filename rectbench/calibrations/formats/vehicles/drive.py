@@ -4,8 +4,7 @@ Properties are words: `Model` ftheta, `width`, `height`, `cx`, `cy`, and `bw-pol
 `polynomial-type`, and `linear-c`, `-d`, `-e`. (0.5, 0.5) is the centre of the top-left pixel, as
 DriveWorks' rays go through pixel + 0.5 - cx. `roll-pitch-yaw`, degrees about the fixed x, y and z, and `t`,
 metres, take points of the sensor, x forward, y left, z up, to the rig; `correction_sensor_R_FLU` is turned
-by before that, and `correction_rig_T` is added to t. Cameras go by their names; of more than two it is
-asked which are left and right.
+by before that, and `correction_rig_T` is added to t. Cameras go by their names.
 """
 
 from __future__ import annotations
@@ -17,9 +16,9 @@ from scipy.spatial.transform import Rotation
 
 from rectbench.calibrations.assembling import rigid, single
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
-from rectbench.calibrations.documents import Section, Source, finite_number, tell
+from rectbench.calibrations.documents import Section, Source, finite_number
+from rectbench.calibrations.formats.named_cameras import by_name, refuse_unread, rig_of_named, tell_missing
 from rectbench.calibrations.formats.vehicles.f_theta_keys import f_theta_camera
-from rectbench.calibrations.named_cameras import by_name, refuse_unread, rig_of_named
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig
 from rectbench.types import FloatArray
@@ -62,18 +61,16 @@ def _read_posed(sensor: Section, given: Given) -> PosedCamera:
     properties.choice("Model", ("ftheta",))
     size = properties.sides("width", "height", given.size)
     centre = (properties.number("cx", "pixels") - 0.5, properties.number("cy", "pixels") - 0.5)
-    missing = [key for key in LINEAR if key not in properties]
-    missing += [key for key in (TURN, SHIFT) if key not in sensor]
-    if missing:
-        tell(f"{sensor.where} has no {', '.join(missing)}; taken to be none")
     key = next((key for key in POLYNOMIALS if key in properties), POLYNOMIALS[0])
     known = {"bw-poly": True, "fw-poly": False}
     by_distance = known[key] if key in known else TYPES[properties.choice("polynomial-type", TYPES)]
+    tell_missing(properties, LINEAR, "those of no stretch: 1, 0, 0")
     linear = [
         properties.number(name, "a number") if name in properties else default
         for name, default in LINEAR.items()
     ]
     poly = _words(properties, key)
+    properties.knows(*known)  # the other one is a fit to it
     camera = f_theta_camera(properties.where, size, centre, poly, by_distance, linear)
     return PosedCamera(sensor.where, camera, _pose(sensor))
 
@@ -91,6 +88,7 @@ def _pose(sensor: Section) -> FloatArray:
     nominal = sensor.section(POSE, f"{ANGLES} and t")
     if "quaternion" in nominal:
         raise InvalidInput(f"{nominal.at('quaternion')} is not read; expected {ANGLES} and t alone")
+    tell_missing(sensor, (TURN, SHIFT), "0")
     R, t = _turn(nominal), np.array(nominal.numbers("t", "three metres", 3))
     if TURN in sensor:
         R = R @ _turn(sensor.section(TURN, ANGLES))

@@ -4,8 +4,7 @@ A camera has `T_sensor_rig`, which takes its points (x right, y down, z forward)
 `camera_model` of type ftheta: `reference_poly` says which of `pixeldist_to_angle_poly` and
 `angle_to_pixeldist_poly` the lens is, `linear_cde` how the sensor is stretched, `max_angle` where the image
 ends, radians. Pixel (0, 0) is the centre of a pixel, which 3DGUT's FThetaCameraModel says of these
-parameters. Cameras go by their `logical_sensor_name`; of more than two it is asked which are left and
-right. A rolling shutter is left out.
+parameters. Cameras go by their `logical_sensor_name`. A rolling shutter is left out.
 """
 
 from __future__ import annotations
@@ -15,9 +14,9 @@ from collections.abc import Sequence
 
 from rectbench.calibrations.assembling import single
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
-from rectbench.calibrations.documents import Section, Source, tell
+from rectbench.calibrations.documents import Section, Source
+from rectbench.calibrations.formats.named_cameras import by_name, rig_of_named, tell_missing
 from rectbench.calibrations.formats.vehicles.f_theta_keys import f_theta_camera
-from rectbench.calibrations.named_cameras import by_name, rig_of_named
 from rectbench.rigs.rig import Rig
 
 CAMERAS = "camera_calibrations"
@@ -49,14 +48,14 @@ def _read_posed(section: Section, given: Given) -> PosedCamera:
     model.choice("type", ("ftheta",))
     lens = model.section("parameters", "those of an f-theta camera")
     lens.only(KEYS)
+    lens.knows(*(key for key, _ in POLYNOMIALS.values()))  # the other one is a fit to the reference
     if lens.values.get("external_distortion_parameters"):
         raise lens.fault("external_distortion_parameters", "none, as a windscreen's are no lens here")
     key, by_distance = POLYNOMIALS[lens.choice("reference_poly", POLYNOMIALS)]
-    lens.knows(*(other for other, _ in POLYNOMIALS.values()))  # a fit to the reference
-    if missing := [name for name in ("linear_cde", "max_angle") if name not in lens]:
-        tell(f"{lens.where} has no {', '.join(missing)}; taken to be none")
     poly = lens.array(key, "a polynomial's coefficients", range(1, MAX_COEFFICIENTS)).tolist()
     cx, cy = lens.numbers("principal_point", "two pixels", 2)
+    tell_missing(lens, ["linear_cde"], "1, 0, 0")
+    tell_missing(lens, ["max_angle"], "as far as the polynomial rises")
     linear = lens.numbers("linear_cde", "c, d, e", 3) if "linear_cde" in lens else (1.0, 0.0, 0.0)
     angle = math.degrees(lens.number("max_angle", "radians")) if "max_angle" in lens else None
     size = lens.size("resolution", given.size)

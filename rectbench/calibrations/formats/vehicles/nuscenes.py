@@ -3,8 +3,7 @@
 A record has a camera's `camera_intrinsic`, K, and its pose in the vehicle: `rotation` (w, x, y, z) and
 `translation`, metres, take the camera's points there (nuScenes' schema). The images are rectified, 1600x900
 pixels, pixel (0, 0) the centre of one. Cameras go by their channels, such as CAM_FRONT, or where a channel
-has several records, of several logs, by these' tokens; of more than two it is asked which are left
-and right.
+has several records, of several logs, by these' tokens.
 """
 
 from __future__ import annotations
@@ -15,8 +14,8 @@ from collections.abc import Sequence
 from rectbench.calibrations.assembling import camera_of, rigid
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents import Section, Source
+from rectbench.calibrations.formats.named_cameras import by_name, quaternion_rotation, rig_of_named
 from rectbench.calibrations.formats.toolboxes.opencv import camera_matrix
-from rectbench.calibrations.named_cameras import by_name, quaternion_rotation, rig_of_named
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig
 
@@ -32,9 +31,6 @@ def _read(sources: Sequence[Source], given: Given) -> Rig:
     source = next(source for source in sources if _recognises(source))
     channels = _channels(source, [other for other in sources if other is not source])
     records = [record for record in source.records if record.values.get(INTRINSIC)]
-    for other in source.records:
-        if not other.values.get(INTRINSIC):
-            other.knows("*")  # a lidar or a radar
     names = [_name(record, channels) for record in records]
     count = Counter(names)
     tokens = [

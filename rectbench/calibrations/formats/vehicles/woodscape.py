@@ -11,8 +11,8 @@ from __future__ import annotations
 from rectbench.calibrations.assembling import rigid
 from rectbench.calibrations.contract import CameraFormat, Given, PosedCamera
 from rectbench.calibrations.documents import Source
+from rectbench.calibrations.formats.named_cameras import quaternion_rotation
 from rectbench.calibrations.formats.vehicles.f_theta_keys import f_theta_camera
-from rectbench.calibrations.named_cameras import quaternion_rotation
 
 COEFFICIENTS = ("k1", "k2", "k3", "k4")
 KEYS = (*COEFFICIENTS, "model", "poly_order", "aspect_ratio", "cx_offset", "cy_offset", "width", "height")
@@ -23,7 +23,8 @@ def read_posed(source: Source, given: Given) -> PosedCamera:
     """The camera in the file, posed in the vehicle."""
     lens = source.document.section("intrinsic", "the lens")
     lens.only(KEYS)
-    lens.choice("model", ("radial_poly",), "radial_poly")
+    if "model" in lens:
+        lens.choice("model", ("radial_poly",))
     if "poly_order" in lens and lens.number("poly_order", "4") != len(COEFFICIENTS):
         raise lens.fault("poly_order", f"{len(COEFFICIENTS)}")
     size = lens.sides("width", "height", given.size)

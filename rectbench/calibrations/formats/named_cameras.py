@@ -13,7 +13,7 @@ from scipy.spatial.transform import Rotation
 from rectbench.calibrations.assembling import Pair, chosen, rig_of_posed
 from rectbench.calibrations.contract import Given, PosedCamera
 from rectbench.calibrations.documents import Section, Source, one_line, tell
-from rectbench.errors import InvalidInput, argument
+from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig
 from rectbench.types import FloatArray
 
@@ -40,13 +40,25 @@ def rig_of_named(
     read: Callable[[Entry], PosedCamera],
     given: Given,
     unit: str | None = None,
+    pairs: Iterable[Pair] = (),
 ) -> Rig:
-    """The rig of two of a file's cameras: those asked for, by their names or the last parts of these."""
+    """The rig of two of a file's cameras: those asked for, by their names or the last parts of these.
+
+    Where none are asked for, the first of `pairs` that the file has is left and right, if there is any.
+    """
 
     def rig_of(names: Pair) -> Rig:
         return rig_of_posed([read(cameras[name]) for name in names], given, source.name, unit)
 
-    return rig_of(chosen(list(cameras), _full_names(given, list(cameras)), source.path, rig_of))
+    return rig_of(pair_of(list(cameras), pairs, _full_names(given, list(cameras)), source.path, rig_of))
+
+
+def pair_of(
+    names: Sequence[str], pairs: Iterable[Pair], given: Given, file: str, rig_of: Callable[[Pair], Rig]
+) -> Pair:
+    """The cameras asked for; or else the first of `pairs` that is there, which says itself what is left."""
+    there = next((pair for pair in pairs if set(pair) <= set(names)), None)
+    return there if there and given.cameras is None else chosen(names, given, file, rig_of)
 
 
 def by_name(entries: Iterable[tuple[str, Entry]]) -> dict[str, Entry]:
@@ -93,6 +105,13 @@ def refuse_unread(section: Section, known: Collection[str]) -> None:
             )
 
 
+def tell_missing(section: Section, keys: Iterable[str], taken: str) -> None:
+    """Tell which of these keys a section has not, and what they are taken to be."""
+    missing = [key for key in keys if key not in section]
+    if missing:
+        tell(f"{section.at(', '.join(missing))}: missing; taken to be {taken}")
+
+
 def told_scale(where: str, given: Given) -> str:
     """The unit of a reconstruction, whose scale nothing need have fixed: that given, or else metres, told."""
     if given.unit is None:
@@ -106,6 +125,6 @@ def told_unit(where: str, baseline: float, longest: float, unit: str, given: Giv
         return given.unit or "m"
     tell(
         f"{where}: the baseline is {baseline:.4g}, too long for metres; taken to be in {unit} "
-        f"(`{argument('unit')}` says otherwise)"
+        "(unit= says otherwise)"
     )
     return unit
