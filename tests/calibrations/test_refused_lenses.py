@@ -225,7 +225,7 @@ def test_what_a_reader_has_no_lens_or_pose_for_is_one_line(
 
 
 def test_a_realsense_of_several_sizes_asks_for_one(tmp_path: Path) -> None:
-    with pytest.raises(InvalidInput, match='"Infrared 1" has 2 intrinsics; expected `size=` one of 424x400'):
+    with pytest.raises(InvalidInput, match='"Infrared 1" has 2 intrinsics; expected `size` one of 424x400'):
         loaded("realsense-d400", lambda text: text, tmp_path, size=None)
     assert loaded("realsense-d400", lambda text: text, tmp_path, size=(424, 400)).left.width == 424
 
@@ -367,7 +367,7 @@ def test_alicevision_s_versions_say_the_focal_length_each_in_its_way(
 def test_aria_s_image_size_is_the_file_s_where_it_has_one(tmp_path: Path, sizes: Change) -> None:
     rig = loaded("aria", sizes, tmp_path, size=None)
     assert rig.left.size == rig.right.size == (640, 480)
-    with pytest.raises(InvalidInput, match="ImageWidth is missing; expected it and ImageHeight, or `size=`"):
+    with pytest.raises(InvalidInput, match="ImageWidth is missing; expected it and ImageHeight, or `size`"):
         loaded("aria", lambda content: content, tmp_path, size=None)
 
 

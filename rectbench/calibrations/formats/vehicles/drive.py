@@ -65,7 +65,7 @@ def _read_posed(sensor: Section, given: Given) -> PosedCamera:
     missing = [key for key in LINEAR if key not in properties]
     missing += [key for key in (TURN, SHIFT) if key not in sensor]
     if missing:
-        tell(f"{sensor.where} has no {', '.join(missing)}; taken to be none")
+        tell(f"{sensor.where} has no {', '.join(missing)}; taken for no stretch and no correction")
     key = next((key for key in POLYNOMIALS if key in properties), POLYNOMIALS[0])
     known = {"bw-poly": True, "fw-poly": False}
     by_distance = known[key] if key in known else TYPES[properties.choice("polynomial-type", TYPES)]

@@ -54,7 +54,7 @@ def _read_posed(section: Section, given: Given) -> PosedCamera:
     key, by_distance = POLYNOMIALS[lens.choice("reference_poly", POLYNOMIALS)]
     lens.knows(*(other for other, _ in POLYNOMIALS.values()))  # a fit to the reference
     if missing := [name for name in ("linear_cde", "max_angle") if name not in lens]:
-        tell(f"{lens.where} has no {', '.join(missing)}; taken to be none")
+        tell(f"{lens.where} has no {', '.join(missing)}; taken for no stretch and no limit")
     poly = lens.array(key, "a polynomial's coefficients", range(1, MAX_COEFFICIENTS)).tolist()
     cx, cy = lens.numbers("principal_point", "two pixels", 2)
     linear = lens.numbers("linear_cde", "c, d, e", 3) if "linear_cde" in lens else (1.0, 0.0, 0.0)
