@@ -23,7 +23,7 @@ from __future__ import annotations
 from numbers import Real
 from typing import Any
 
-from rectbench.errors import InvalidInput
+from rectbench.errors import InvalidInput, argument
 
 MARGIN_DEG = 7.0
 """The margin where nobody states one."""
@@ -42,7 +42,8 @@ def checked_margin(margin_deg: Any) -> float:
     """
     is_real = isinstance(margin_deg, Real) and not isinstance(margin_deg, bool)
     if not is_real or not 0 < margin_deg <= WIDEST_MARGIN_DEG:
+        name = argument("margin_deg")
         raise InvalidInput(
-            f"margin_deg is {margin_deg!r}; expected degrees above 0, at most {WIDEST_MARGIN_DEG:g}"
+            f"{name} is {margin_deg!r}; expected degrees above 0, at most {WIDEST_MARGIN_DEG:g}"
         )
     return float(margin_deg)

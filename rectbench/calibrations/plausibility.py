@@ -11,6 +11,7 @@ import numpy as np
 from rectbench.calibrations.documents import tell
 from rectbench.cameras import Camera
 from rectbench.cameras.lens import lens_named
+from rectbench.errors import argument
 from rectbench.formulas.namespaces import NUMPY
 from rectbench.rigs.rig import Rig
 
@@ -38,7 +39,7 @@ def tell_implausible(rig: Rig) -> None:
     if not SHORTEST_BASELINE_M <= rig.baseline_m <= LONGEST_BASELINE_M:
         tell(
             f"{rig.name}: the baseline is {rig.baseline_m:.3g} m, which few rigs have; if the calibration's "
-            "translations are in another unit, `unit=` (--unit) states it"
+            f"translations are in another unit, `{argument('unit')}` states it"
         )
 
 
