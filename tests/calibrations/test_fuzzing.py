@@ -20,8 +20,8 @@ import numpy as np
 import pytest
 
 from rectbench import RectbenchError, Rig, load_rig
+from rectbench.calibrations.checks.unknown import UnknownFormat
 from rectbench.calibrations.formats.native import rig_fields
-from rectbench.calibrations.unknown import UnknownFormat
 from rectbench.yaml_text import yaml_text
 from tests.calibrations.examples import EXAMPLES, FISHEYES, Example
 from tests.calibrations.mutations import damaged

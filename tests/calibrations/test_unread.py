@@ -11,8 +11,8 @@ import yaml
 
 from rectbench import InvalidInput, load_rig
 from rectbench.calibrations import telling, told_already
+from rectbench.calibrations.checks.unread import tell_unread
 from rectbench.calibrations.documents.sources import Source
-from rectbench.calibrations.unread import tell_unread
 from tests.calibrations.examples import EXAMPLES, FISHEYES
 from tests.calibrations.test_every_format import assert_same_rig, written
 

@@ -14,10 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from rectbench.calibrations.contract import UNITS
-from rectbench.calibrations.documents import Source, finite_number, one_line, tell
-from rectbench.calibrations.documents.entries import Entries
-from rectbench.calibrations.vocabulary import (
+from rectbench.calibrations.checks.vocabulary import (
     COEFFICIENT,
     DISTORTION,
     LENS,
@@ -33,6 +30,9 @@ from rectbench.calibrations.vocabulary import (
     bare,
     words_of,
 )
+from rectbench.calibrations.contract import UNITS
+from rectbench.calibrations.documents import Source, finite_number, one_line, tell
+from rectbench.calibrations.documents.entries import Entries
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig
 
