@@ -41,8 +41,8 @@ def checked_margin(margin_deg: Any) -> float:
     """
     is_real = isinstance(margin_deg, Real) and not isinstance(margin_deg, bool)
     if not is_real or not 0 < margin_deg <= WIDEST_MARGIN_DEG:
+        name = argument("margin_deg")
         raise InvalidInput(
-            f"{argument('margin_deg')} is {margin_deg!r}; "
-            f"expected degrees above 0, at most {WIDEST_MARGIN_DEG:g}"
+            f"{name} is {margin_deg!r}; expected degrees above 0, at most {WIDEST_MARGIN_DEG:g}"
         )
     return float(margin_deg)

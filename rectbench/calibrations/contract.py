@@ -1,9 +1,9 @@
 """What a calibration format is: how its files are recognised, and what is read from them.
 
 What looks like part of a lens or a pose in a `Source`'s document, table or `section`, and was not asked for
-while the file was read, is told by the framework (`rectbench.calibrations.unread`). A reader says of keys
-that it need not read, such as what follows from the others, that it knows them (`Section.knows`); of what it
-assumes, that it does (`documents.tell`).
+while the file was read, is told by the framework (`rectbench.calibrations.checks.unread`). A reader says of
+keys that it need not read, such as what follows from the others, that it knows them (`Section.knows`); of
+what it assumes, that it does (`documents.tell`).
 
 How one is written is in `rectbench.rigs.file_formats`. A format is one object of these classes in a file of
 its own below `rectbench.calibrations.formats`, or in a package's module that is announced as an entry point

@@ -10,13 +10,13 @@ from pathlib import Path
 from rectbench.calibrations import pose_file
 from rectbench.calibrations.assembling import assembled, rig_of_posed
 from rectbench.calibrations.built_in_rigs import built_in_rig, may_be_rig_name
+from rectbench.calibrations.checks.plausibility import tell_implausible
+from rectbench.calibrations.checks.unknown import unknown_format
+from rectbench.calibrations.checks.unread import tell_unread
 from rectbench.calibrations.contract import CameraFormat, Given, RigFormat
 from rectbench.calibrations.documents import Source, checked_size, one_line, shown, tell, telling
 from rectbench.calibrations.documents.sources import is_folder, sources_in
-from rectbench.calibrations.plausibility import tell_implausible
 from rectbench.calibrations.recognising import camera_format, formats, is_known
-from rectbench.calibrations.unknown import unknown_format
-from rectbench.calibrations.unread import tell_unread
 from rectbench.errors import InvalidInput, argument
 from rectbench.rigs.rig import Rig
 

@@ -21,8 +21,8 @@ import pytest
 
 from rectbench import RectbenchError, Rig, load_rig
 from rectbench.calibrations import told_already
+from rectbench.calibrations.checks.unknown import UnknownFormat
 from rectbench.calibrations.formats.native import rig_fields
-from rectbench.calibrations.unknown import UnknownFormat
 from rectbench.yaml_text import yaml_text
 from tests.calibrations.examples import EXAMPLES, FISHEYES, Example
 from tests.calibrations.mutations import damaged

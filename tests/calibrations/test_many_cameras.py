@@ -102,7 +102,7 @@ def test_of_three_cameras_the_pairs_are_listed_and_none_is_taken(
     tmp_path: Path, name: str, caplog: pytest.LogCaptureFixture
 ) -> None:
     paths = with_a_third(name, tmp_path)
-    with pytest.raises(CamerasNotChosen, match="holds 3 cameras; expected `cameras=`") as caught:
+    with pytest.raises(CamerasNotChosen, match="holds 3 cameras; expected `cameras`") as caught:
         load_rig(paths)
     assert caught.value.names == ("cam0", "cam1", "cam2")
     assert "cam0,cam1 (baseline 0.11 m, " in str(caught.value)

@@ -10,7 +10,7 @@ import pytest
 import yaml
 
 from rectbench import Camera, Rig, load_rig
-from rectbench.calibrations.plausibility import tell_implausible
+from rectbench.calibrations.checks.plausibility import tell_implausible
 from tests.calibrations.calibration_files import D1, D2, IMAGE, K1, K2, POSE, opencv_file
 from tests.calibrations.examples import EXAMPLES, FISHEYES, PINHOLES
 from tests.calibrations.test_every_format import written

@@ -219,12 +219,12 @@ def test_what_a_reader_has_no_lens_or_pose_for_is_one_line(
 ) -> None:
     with pytest.raises(InvalidInput, match=reason) as caught:
         loaded(name, change, tmp_path)
-    assert str(caught.value).splitlines()[0].isprintable()  # three lines, where nothing recognises it
+    assert caught.value.has_lines or str(caught.value).isprintable()  # what is unknown has several
     assert str(tmp_path) in str(caught.value)
 
 
 def test_a_realsense_of_several_sizes_asks_for_one(tmp_path: Path) -> None:
-    with pytest.raises(InvalidInput, match='"Infrared 1" has 2 intrinsics; expected `size=` one of 424x400'):
+    with pytest.raises(InvalidInput, match='"Infrared 1" has 2 intrinsics; expected `size` one of 424x400'):
         loaded("realsense-d400", lambda text: text, tmp_path, size=None)
     assert loaded("realsense-d400", lambda text: text, tmp_path, size=(424, 400)).left.width == 424
 
@@ -249,7 +249,7 @@ def test_centimetres_and_millimetres_are_told_where_metres_cannot_be(
     assert loaded("facebook360", lambda _: None, tmp_path, unit="ft").baseline_m == pytest.approx(
         EXAMPLES["facebook360"].rig.baseline_m * 0.3048
     )
-    assert not caplog.records
+    assert "too long for metres" not in caplog.text
 
 
 @pytest.mark.parametrize("name", ["transforms", "openmvg", "alicevision", "metashape-fisheye"])
@@ -262,12 +262,12 @@ def test_a_scale_that_nothing_fixed_is_told_unless_it_is_stated(
     assert loaded(name, lambda content: content, tmp_path, unit="ft").baseline_m == pytest.approx(
         rig.baseline_m * 0.3048
     )
-    assert not caplog.records
+    assert "its scale is arbitrary" not in caplog.text
 
 
 def test_metashape_s_own_scale_is_metres(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
     loaded("metashape", lambda text: text, tmp_path)
-    assert not caplog.records
+    assert "its scale is arbitrary" not in caplog.text
     with pytest.raises(InvalidInput, match="is in m; expected unit='mm' as given beside the file"):
         loaded("metashape", lambda text: text, tmp_path, unit="mm")
 
@@ -366,7 +366,7 @@ def test_alicevision_s_versions_say_the_focal_length_each_in_its_way(
 def test_aria_s_image_size_is_the_file_s_where_it_has_one(tmp_path: Path, sizes: Change) -> None:
     rig = loaded("aria", sizes, tmp_path, size=None)
     assert rig.left.size == rig.right.size == (640, 480)
-    with pytest.raises(InvalidInput, match="ImageWidth is missing; expected it and ImageHeight, or `size=`"):
+    with pytest.raises(InvalidInput, match="ImageWidth is missing; expected it and ImageHeight, or `size`"):
         loaded("aria", lambda content: content, tmp_path, size=None)
 
 

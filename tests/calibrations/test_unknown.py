@@ -9,7 +9,7 @@ import pytest
 import yaml
 
 from rectbench import load_rig
-from rectbench.calibrations.unknown import UnknownFormat
+from rectbench.calibrations.checks.unknown import UnknownFormat
 from tests.calibrations.examples import EXAMPLES
 from tests.conftest import Shell
 

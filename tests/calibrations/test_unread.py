@@ -11,45 +11,46 @@ import yaml
 
 from rectbench import InvalidInput, load_rig
 from rectbench.calibrations import telling, told_already
+from rectbench.calibrations.checks.unread import tell_unread
 from rectbench.calibrations.documents.sources import Source
-from rectbench.calibrations.unread import tell_unread
 from tests.calibrations.examples import EXAMPLES, FISHEYES
 from tests.calibrations.test_every_format import assert_same_rig, written
 
+FOUR = "taken for a pinhole's k1 k2 p1 p2"
+SCALE = "its scale is arbitrary unless something fixed it; taken to be in metres"
+UNDISTORTED = "left out, as Argoverse's images are undistorted"
+TURNS = "camera's distortion turns at"
 TOLD = {
-    "opencv-sections": "taken for a pinhole's k1 k2 p1 p2",
-    "opencv-samples": "taken for a pinhole's k1 k2 p1 p2",
-    "opencv-left-right": "taken for a pinhole's k1 k2 p1 p2",
-    "ros-fisheye-today": "K R in them, as ROS' calibrator of fisheyes writes them",
-    "ros-fisheye-own-focal": "P has each camera's own focal length",
-    "kitti-rectified": "holds 3 cameras; 0 and 1 are taken, others by `cameras=`",
-    "realsense-json-plain": "extrinsics: taken to lead from left to right",
-    **dict.fromkeys(
-        (
-            "metashape-fisheye",
-            "transforms",
-            "transforms-ngp",
-            "transforms-f-theta",
-            "openmvg",
-            "alicevision",
-            "alicevision-rig",
-        ),
-        "its scale is arbitrary unless something fixed it; taken to be in metres",
-    ),
-    "drive": "linear-c, linear-d, linear-e: missing; taken to be those of no stretch: 1, 0, 0",
-    "argoverse": "distortion_coefficients_: left out, as Argoverse's images are undistorted",
-    "argoverse-two": "k1, k2, k3: left out, as Argoverse's images are undistorted",
-    "left-right": "right.T: taken to take points of the frame that both share to the camera",
-    "simplestereo": "T: the baseline is 110, too long for metres; taken to be in mm",
-    "multical-master": "cameras.cam1.dist: four coefficients, taken for those of MultiCal's fisheye",
+    "opencv-sections": (FOUR, FOUR),
+    "opencv-samples": (FOUR, FOUR),
+    "opencv-left-right": (FOUR, FOUR),
+    "ros-fisheye-today": ("P has each camera's own K R",),
+    "ros-fisheye-own-focal": ("P has each camera's own focal length",),
+    "kitti-rectified": ("holds 3 cameras; 0 and 1 are taken, others by `cameras`",),
+    "left-right": ("right.T: taken to take points of the frame that both share",),
+    "simplestereo": ("too long for metres; taken to be in mm (`unit` says otherwise)",),
+    "multical-master": ("`dist` of four coefficients is taken for that of MultiCal's fisheye",),
+    "realsense-json-plain": ("extrinsics: taken to lead from left to right",),
+    "metashape": (TURNS,),
+    "metashape-fisheye": (SCALE,),
+    "transforms": (SCALE,),
+    "transforms-ngp": (SCALE,),
+    "transforms-f-theta": (SCALE,),
+    "openmvg": (SCALE,),
+    "alicevision": (SCALE, TURNS),
+    "alicevision-rig": (SCALE,),
+    "drive": ("linear-e, correction_sensor_R_FLU, correction_rig_T; taken for no", "linear-e; taken for no"),
+    "argoverse": (UNDISTORTED,),
+    "argoverse-two": (UNDISTORTED,),
 }
-"""Of which examples something is assumed, and what."""
+"""Of which examples something is assumed, and what, line by line."""
 
 
 @pytest.mark.parametrize("name", TOLD)
 def test_what_is_assumed_is_told(tmp_path: Path, name: str, caplog: pytest.LogCaptureFixture) -> None:
     load_rig(written(EXAMPLES[name], tmp_path), **EXAMPLES[name].options)
-    assert TOLD[name] in caplog.messages[0]
+    assert len(caplog.messages) == len(TOLD[name])
+    assert all(text in line for text, line in zip(TOLD[name], caplog.messages, strict=True))
 
 
 @pytest.mark.parametrize("name", [name for name in EXAMPLES if name not in TOLD])
@@ -253,3 +254,60 @@ def test_what_programs_keep_beside_their_cameras_is_not_told(
         path.write_text(path.read_text() + more)
     load_rig([path, *others], **EXAMPLES[name].options)
     assert caplog.messages == []
+
+
+def test_a_mapping_beside_a_list_that_was_read_is_no_other_camera(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    content = json.loads(EXAMPLES["transforms-ngp"].files["transforms.json"])
+    (tmp_path / "transforms.json").write_text(json.dumps({**content, "more": {"k1": 0.1}}))
+    load_rig(tmp_path / "transforms.json")
+    assert "more: looks like part of a lens or a pose, but is not read" in caplog.text
+
+
+LEFT_OUT = {
+    "transforms": ("transforms.json", {"fl_y": "as fl_x", "k4": "k4 of a lens missing; taken to be 0"}),
+    "transforms-ngp": ("transforms.json", {"cx": "the middle", "p1": "p1 of a lens missing; taken to be 0"}),
+    "nurec": ("rig_trajectories.json", {"max_angle": "no max_angle", "linear_cde": "no linear_cde"}),
+    "alicevision": ("cameras.sfm.json", {"pixelRatio": "taken to be 1", "sensorWidth": "taken to be 36"}),
+    "drive": ("rig.json", {"correction_rig_T": "no linear-c, linear-d, linear-e, correction_rig_T"}),
+    "isaac": (
+        "camera_params_right.json",
+        {"metersPerSceneUnit": "taken to be 1, metres", "cameraApertureOffset": "taken to be [0, 0]"},
+    ),
+}
+
+
+@pytest.mark.parametrize(
+    ("name", "key", "told"),
+    [(name, key, told) for name, (_, keys) in LEFT_OUT.items() for key, told in keys.items()],
+)
+def test_what_is_taken_for_a_key_that_is_left_out_is_told(
+    tmp_path: Path, name: str, key: str, told: str, caplog: pytest.LogCaptureFixture
+) -> None:
+    paths = written(EXAMPLES[name], tmp_path)
+    path = tmp_path / LEFT_OUT[name][0]
+    path.write_text(json.dumps(without(json.loads(path.read_text()), key)))
+    unit = {"unit": "m"} if key == "metersPerSceneUnit" else {}  # or else eleven metres are refused
+    load_rig(paths, **{**EXAMPLES[name].options, **unit})
+    assert told in caplog.text
+
+
+def without(content: object, key: str) -> object:
+    """The same content, at any depth without a key."""
+    if isinstance(content, dict):
+        return {name: without(value, key) for name, value in content.items() if name != key}
+    return [without(item, key) for item in content] if isinstance(content, list) else content
+
+
+def test_a_baseline_of_metres_is_told_where_no_unit_is_stated(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    (path,) = written(EXAMPLES["boofcv"], tmp_path)
+    content = yaml.safe_load(path.read_text())
+    content["rightToLeft"] |= {"x": 4.2, "y": 0.0, "z": 0.0}
+    path.write_text(yaml.safe_dump(content))
+    assert load_rig(path, unit="m").baseline_m == pytest.approx(4.2)
+    assert caplog.messages == []
+    load_rig(path)
+    assert "the baseline is taken to be 4.2 m; `unit` says otherwise" in caplog.text

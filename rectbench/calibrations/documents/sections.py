@@ -35,7 +35,7 @@ class Section:
     """A mapping in a calibration file, read by key; whatever is amiss is an InvalidInput.
 
     A key counts as read once a reader asks for it; what looks like part of a lens or a pose and was not read
-    is told when the reader is done (`rectbench.calibrations.unread`).
+    is told when the reader is done (`rectbench.calibrations.checks.unread`).
     """
 
     file: str

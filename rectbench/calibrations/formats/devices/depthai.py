@@ -13,7 +13,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from rectbench.calibrations.assembling import Pair, chosen, rig_of_posed, rigid, single
-from rectbench.calibrations.consistency import compare_rotations, rotation_in
+from rectbench.calibrations.checks.consistency import compare_rotations, rotation_in
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents import Section, Source, finite_number, tell
 from rectbench.calibrations.formats.toolboxes.opencv import opencv_camera

@@ -21,8 +21,8 @@ from typing import Any
 import numpy as np
 
 from rectbench.calibrations.assembling import assembled, camera_of, inverse, pose_matrix, single
+from rectbench.calibrations.checks.consistency import compare_poses
 from rectbench.calibrations.choosing import Pair, chosen
-from rectbench.calibrations.consistency import compare_poses
 from rectbench.calibrations.contract import Given, RigFormat
 from rectbench.calibrations.documents import Section, Source
 from rectbench.calibrations.formats.toolboxes.opencv_keys import MATRIX

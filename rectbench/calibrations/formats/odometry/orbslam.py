@@ -21,7 +21,7 @@ from rectbench.calibrations.assembling import (
     side_by_side,
     single,
 )
-from rectbench.calibrations.consistency import compare_numbers
+from rectbench.calibrations.checks.consistency import compare_numbers
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents import Section, Source
 from rectbench.calibrations.formats.devices.ros import rectified

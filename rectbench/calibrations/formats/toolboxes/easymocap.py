@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from rectbench.calibrations.assembling import Pair, chosen, inverse, rig_of_posed, rigid
-from rectbench.calibrations.consistency import compare_rotations
+from rectbench.calibrations.checks.consistency import compare_rotations
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents import Section, Source
 from rectbench.calibrations.formats.toolboxes.opencv import opencv_camera

@@ -36,7 +36,7 @@ import cv2
 import numpy as np
 
 from rectbench.calibrations.assembling import assembled, camera_of, rigid
-from rectbench.calibrations.consistency import compare_lengths, compare_rotations, rotation_in
+from rectbench.calibrations.checks.consistency import compare_lengths, compare_rotations, rotation_in
 from rectbench.calibrations.contract import Given, RigFormat
 from rectbench.calibrations.documents import Section, Source, agreed_size, shown, tell
 from rectbench.calibrations.documents.numbers import flat_numbers

@@ -52,6 +52,7 @@ def _read_posed(section: Section, given: Given) -> PosedCamera:
     if lens.values.get("external_distortion_parameters"):
         raise lens.fault("external_distortion_parameters", "none, as a windscreen's are no lens here")
     key, by_distance = POLYNOMIALS[lens.choice("reference_poly", POLYNOMIALS)]
+    lens.knows(*(other for other, _ in POLYNOMIALS.values()))  # a fit to the reference
     poly = lens.array(key, "a polynomial's coefficients", range(1, MAX_COEFFICIENTS)).tolist()
     cx, cy = lens.numbers("principal_point", "two pixels", 2)
     tell_missing(lens, ["linear_cde"], "1, 0, 0")

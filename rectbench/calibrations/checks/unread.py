@@ -16,10 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from rectbench.calibrations.contract import UNITS
-from rectbench.calibrations.documents import Source, finite_number, one_line, tell
-from rectbench.calibrations.documents.entries import Entries
-from rectbench.calibrations.vocabulary import (
+from rectbench.calibrations.checks.vocabulary import (
     COEFFICIENT,
     DISTORTION,
     FLAGS,
@@ -36,6 +33,9 @@ from rectbench.calibrations.vocabulary import (
     bare,
     words_of,
 )
+from rectbench.calibrations.contract import UNITS
+from rectbench.calibrations.documents import Source, finite_number, one_line, tell
+from rectbench.calibrations.documents.entries import Entries
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig
 
