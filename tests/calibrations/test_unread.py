@@ -19,7 +19,6 @@ from tests.calibrations.test_every_format import assert_same_rig, written
 FOUR = "taken for a pinhole's k1 k2 p1 p2"
 SCALE = "its scale is arbitrary unless something fixed it; taken to be in metres"
 UNDISTORTED = "left out, as Argoverse's images are undistorted"
-TURNS = "camera's distortion turns at"
 TOLD = {
     "opencv-sections": (FOUR, FOUR),
     "opencv-samples": (FOUR, FOUR),
@@ -29,19 +28,18 @@ TOLD = {
     "kitti-rectified": ("holds 3 cameras; 0 and 1 are taken, others by `cameras`",),
     "left-right": ("right.T: taken to take points of the frame that both share",),
     "simplestereo": ("too long for metres; taken to be in mm (`unit` says otherwise)",),
-    "multical-master": ("`dist` of four coefficients is taken for that of MultiCal's fisheye",),
+    "multical-master": ("taken for those of MultiCal's fisheye",) * 2,
     "realsense-json-plain": ("extrinsics: taken to lead from left to right",),
-    "metashape": (TURNS,),
     "metashape-fisheye": (SCALE,),
     "transforms": (SCALE,),
     "transforms-ngp": (SCALE,),
     "transforms-f-theta": (SCALE,),
     "openmvg": (SCALE,),
-    "alicevision": (SCALE, TURNS),
+    "alicevision": (SCALE,),
     "alicevision-rig": (SCALE,),
-    "drive": ("linear-e, correction_sensor_R_FLU, correction_rig_T; taken for no", "linear-e; taken for no"),
-    "argoverse": (UNDISTORTED,),
-    "argoverse-two": (UNDISTORTED,),
+    "drive": ("linear-e: missing", "correction_sensor_R_FLU, correction_rig_T: missing", "linear-e: missing"),
+    "argoverse": (UNDISTORTED,) * 2,
+    "argoverse-two": (UNDISTORTED,) * 2,
 }
 """Of which examples something is assumed, and what, line by line."""
 
@@ -266,11 +264,20 @@ def test_a_mapping_beside_a_list_that_was_read_is_no_other_camera(
 
 
 LEFT_OUT = {
-    "transforms": ("transforms.json", {"fl_y": "as fl_x", "k4": "k4 of a lens missing; taken to be 0"}),
-    "transforms-ngp": ("transforms.json", {"cx": "the middle", "p1": "p1 of a lens missing; taken to be 0"}),
-    "nurec": ("rig_trajectories.json", {"max_angle": "no max_angle", "linear_cde": "no linear_cde"}),
+    "transforms": (
+        "transforms.json",
+        {"fl_y": "fl_y: missing; taken to be fl_x", "k4": "k4: missing; taken to be 0"},
+    ),
+    "transforms-ngp": (
+        "transforms.json",
+        {"cx": "cx: missing; taken to be the image's centre", "p1": "p1: missing; taken to be 0"},
+    ),
+    "nurec": (
+        "rig_trajectories.json",
+        {"max_angle": "max_angle: missing", "linear_cde": "linear_cde: missing"},
+    ),
     "alicevision": ("cameras.sfm.json", {"pixelRatio": "taken to be 1", "sensorWidth": "taken to be 36"}),
-    "drive": ("rig.json", {"correction_rig_T": "no linear-c, linear-d, linear-e, correction_rig_T"}),
+    "drive": ("rig.json", {"correction_rig_T": "correction_rig_T: missing; taken to be 0"}),
     "isaac": (
         "camera_params_right.json",
         {"metersPerSceneUnit": "taken to be 1, metres", "cameraApertureOffset": "taken to be [0, 0]"},

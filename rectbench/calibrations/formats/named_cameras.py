@@ -13,7 +13,7 @@ from scipy.spatial.transform import Rotation
 from rectbench.calibrations.assembling import Pair, chosen, rig_of_posed
 from rectbench.calibrations.contract import Given, PosedCamera
 from rectbench.calibrations.documents import Section, Source, one_line, tell
-from rectbench.errors import InvalidInput
+from rectbench.errors import InvalidInput, argument
 from rectbench.rigs.rig import Rig
 from rectbench.types import FloatArray
 
@@ -125,6 +125,6 @@ def told_unit(where: str, baseline: float, longest: float, unit: str, given: Giv
         return given.unit or "m"
     tell(
         f"{where}: the baseline is {baseline:.4g}, too long for metres; taken to be in {unit} "
-        "(unit= says otherwise)"
+        f"(`{argument('unit')}` says otherwise)"
     )
     return unit

@@ -30,7 +30,7 @@ from rectbench.calibrations.documents import Section, Source, errors_at, finite_
 from rectbench.calibrations.formats.devices.realsense_lens import realsense_camera, stereo_pairs
 from rectbench.calibrations.formats.named_cameras import pair_of
 from rectbench.cameras import Camera
-from rectbench.errors import InvalidInput
+from rectbench.errors import InvalidInput, argument
 from rectbench.rigs.rig import Rig, checked_rotation
 from rectbench.types import FloatArray
 
@@ -95,7 +95,7 @@ def _camera(blocks: list[Section], name: str, given: Given) -> Camera:
         file = blocks[0].file
         raise InvalidInput(
             f'{file}: "{name}" has {len(fitting)} intrinsics'
-            f"{' of that size' if given.size else ''}; expected `size=` one of {sizes}"
+            f"{' of that size' if given.size else ''}; expected `{argument('size')}` one of {sizes}"
         )
     section = fitting[0]
     return realsense_camera(section, FIELDS, _size(section))

@@ -24,6 +24,7 @@ MODELS = {
 
 def _read(sources: Sequence[Source], given: Given) -> Rig:
     source = single(sources)
+    source.document.knows("camera_extrinsics")  # how sure these are
     return rig_of_list(source, source.document.section_of_list("cameras"), _read_posed, given)
 
 

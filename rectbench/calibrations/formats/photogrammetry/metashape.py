@@ -31,7 +31,7 @@ from rectbench.calibrations.documents.elements import parse_elements
 from rectbench.calibrations.documents.parsing import Malformed
 from rectbench.calibrations.formats.named_cameras import by_name, rig_of_named, told_scale
 from rectbench.cameras import Camera
-from rectbench.errors import InvalidInput
+from rectbench.errors import InvalidInput, argument
 from rectbench.rigs.rig import Rig
 
 PARAMETERS = ("f", "cx", "cy", "b1", "b2", "k1", "k2", "k3", "k4", "p1", "p2", "p3", "p4")
@@ -80,7 +80,7 @@ def _check_slaves(chunk: _Chunk, given: Given) -> None:
         if given.cameras is None or name in given.cameras:
             raise InvalidInput(
                 f"{chunk.file}: camera {shown(name)} is a slave of a multi-camera system and has no "
-                "transform of its own; expected `cameras=` two that have one"
+                f"transform of its own; expected `{argument('cameras')}` two that have one"
             )
 
 

@@ -23,7 +23,7 @@ from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents import Section, Source, tell
 from rectbench.calibrations.formats.named_cameras import by_name, quaternion_rotation, rig_of_named
 from rectbench.cameras import Camera
-from rectbench.errors import InvalidInput
+from rectbench.errors import InvalidInput, argument
 from rectbench.rigs.rig import Rig
 from rectbench.types import FloatArray
 
@@ -60,7 +60,9 @@ def _read_first(entry: Section, given: Given) -> PosedCamera:
     _tell(value, value.values.get("distortion_coefficients_"), "distortion_coefficients_")
     size = given.size or SIZES.get(name.partition("_")[0])
     if size is None:
-        raise InvalidInput(f"{value.where}: tells no image size; expected `size=` beside the file")
+        raise InvalidInput(
+            f"{value.where}: tells no image size; expected `{argument('size')}` beside the file"
+        )
     pose = value.section("vehicle_SE3_camera_", "rotation and translation")
     rotation = pose.section("rotation", "coefficients")
     T = rigid(

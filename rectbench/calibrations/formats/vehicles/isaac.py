@@ -14,8 +14,8 @@ import numpy as np
 
 from rectbench.calibrations.assembling import camera_of, inverse
 from rectbench.calibrations.contract import CameraFormat, Given, PosedCamera
-from rectbench.calibrations.documents import Section, Source, agreed_size, errors_at
-from rectbench.calibrations.formats.named_cameras import Y_UP_Z_BACK, refuse_unread, tell_missing
+from rectbench.calibrations.documents import Section, Source, agreed_size, errors_at, tell
+from rectbench.calibrations.formats.named_cameras import Y_UP_Z_BACK, refuse_unread
 from rectbench.calibrations.formats.vehicles.f_theta_keys import f_theta_camera
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
@@ -27,6 +27,7 @@ VIEW = "cameraViewTransform"
 NOMINAL = ("cameraFisheyeNominalWidth", "cameraFisheyeNominalHeight")
 OFFSET = "cameraApertureOffset"
 RESOLUTION = "renderProductResolution"
+UNIT = "metersPerSceneUnit"
 MAX_COEFFICIENTS = 12
 KEYS = (
     *(POLYNOMIAL, VIEW, *NOMINAL, OFFSET, RESOLUTION, "cameraModel", "cameraFisheyeOpticalCentre"),
@@ -42,14 +43,20 @@ KEYS = (
 )
 """Those of the annotator; some are of models that are refused."""
 
+OF_OTHERS = {
+    "pinhole": ("cameraFisheye*", "cameraOpenCV*"),
+    "fisheyePolynomial": ("cameraFocalLength", "cameraAperture*", "cameraFisheyeLens*", "cameraOpenCV*"),
+}
+"""What is written with each model and says nothing of it, as it is of another one."""
+
 
 def read_posed(source: Source, given: Given) -> PosedCamera:
     """The camera in the file, posed in the scene, metres."""
     file = source.document
     refuse_unread(file, KEYS)
-    file.knows(*KEYS)
     size = agreed_size(file.at(RESOLUTION), file.numbers(RESOLUTION, "[width, height]", 2), given.size)
     kind = file.choice("cameraModel", ("pinhole", "fisheyePolynomial"))
+    file.knows(*OF_OTHERS[kind])
     camera = _pinhole(file, size) if kind == "pinhole" else _fisheye(file, size)
     return PosedCamera(source.path, camera, _pose(file))
 
@@ -62,10 +69,9 @@ def _fisheye(file: Section, size: tuple[int, int]) -> Camera:
             f"{file.at(NOMINAL[0])} and Height are {nominal[0]:g}x{nominal[1]:g}; expected the proportions "
             f"of the image, {size[0]}x{size[1]}"
         )
-    tell_missing(file, ["cameraFisheyeMaxFOV"], "as far as the polynomial rises")
     poly = file.array(POLYNOMIAL, "a polynomial's coefficients", range(1, MAX_COEFFICIENTS))
     u, v = file.numbers("cameraFisheyeOpticalCentre", "two pixels", 2)
-    fov = file.number("cameraFisheyeMaxFOV", "degrees") if "cameraFisheyeMaxFOV" in file else 0.0
+    fov = file.number("cameraFisheyeMaxFOV", "degrees, 0 where the image ends the view")
     scaled = (poly / scale ** np.arange(len(poly))).tolist()
     centre = (u * scale - 0.5, v * scale - 0.5)
     angle = min(fov, 360.0) / 2 if fov > 0 else None
@@ -73,7 +79,9 @@ def _fisheye(file: Section, size: tuple[int, int]) -> Camera:
 
 
 def _pinhole(file: Section, size: tuple[int, int]) -> Camera:
-    if any(file.array(OFFSET, "two lengths", (2,)) if OFFSET in file else ()):
+    if OFFSET not in file:
+        tell(f"{file.at(OFFSET)} is missing; taken to be [0, 0]")
+    elif any(file.array(OFFSET, "two lengths", (2,))):
         raise file.fault(OFFSET, "[0, 0]")
     aperture = file.array("cameraAperture", "width and height", (2,))
     if not aperture[0] > 0:
@@ -88,9 +96,11 @@ def _pose(file: Section) -> FloatArray:
     T = file.array(VIEW, "a 4x4 matrix for rows", (16,)).reshape(4, 4).T
     if not np.allclose(T[3], [0, 0, 0, 1], atol=1e-9):
         raise file.fault(VIEW, "a 4x4 matrix for rows, its last column 0 0 0 1")
-    metres = file.number("metersPerSceneUnit", "metres") if "metersPerSceneUnit" in file else 1.0
+    if UNIT not in file:
+        tell(f"{file.at(UNIT)} is missing; taken to be 1, metres")
+    metres = file.number(UNIT, "metres") if UNIT in file else 1.0
     if not metres > 0:
-        raise file.fault("metersPerSceneUnit", "metres above 0")
+        raise file.fault(UNIT, "metres above 0")
     T = T.copy()
     with errors_at(file.at(VIEW)):
         T[:3, :3] = checked_rotation(T[:3, :3], "its 3x3 part")
