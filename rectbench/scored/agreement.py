@@ -41,7 +41,7 @@ CLOSURE_PX = 1e-3
 """inverse(forward(x)) is this near to x."""
 DERIVATIVE_SHARE, DERIVATIVE_ARM_PX = 5e-3, 5e-3
 """The stated derivative is this near to differences over so short an arm, by the largest entry there."""
-DISTORTION_SHARE, DISTORTION_FLOOR = 0.01, 2e-3
+DISTORTION_SHARE, DISTORTION_FLOOR = 0.02, 2e-3
 """A table's log distortion between neighbouring entries is this near to that between distant ones."""
 LEAST_PIECES = 1_000
 """By fewer, of the finest table that is feasible, nobody can tell what a map does to the image."""
