@@ -77,10 +77,11 @@ def test_rectify_wants_a_rig() -> None:
         rb.rectify("t265")  # type: ignore[arg-type]
 
 
-def test_an_epipole_in_view_is_unsupported_with_the_reason(rig: rb.Rig) -> None:
+def test_an_epipole_in_view_is_trimmed_by_the_margin(rig: rb.Rig) -> None:
     forward = rb.Rig(rig.left, rig.right, np.eye(3), np.array([0, 0, -0.1]), name="forward")
-    with pytest.raises(rb.Unsupported, match="epipole"):
-        rb.rectify(forward)
+    assert rb.rectify(forward, margin_deg=9).rig == forward.trimmed(9)
+    with pytest.raises(rb.InvalidInput, match="margin_deg is 0; expected"):
+        rb.rectify(forward, margin_deg=0)
 
 
 def test_a_plugin_that_returns_something_else_is_told(rig: rb.Rig, tmp_path: Path) -> None:

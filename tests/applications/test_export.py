@@ -297,10 +297,10 @@ def test_a_method_that_cannot_serve_the_rig_says_so_first(
     scene: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(Stage, "of", refuse_to_render)
-    lens = rb.Camera("equidistant", (200, 200), {"fx": 100, "fy": 100, "cx": 99.5, "cy": 99.5})
-    backwards = np.diag([-1.0, 1.0, -1.0])
+    lens = rb.Camera("equidistant", (200, 200), {"fx": 120, "fy": 120, "cx": 99.5, "cy": 99.5})
+    behind = rb.Rig(lens, lens, np.diag([-1.0, 1.0, -1.0]), np.array([0.0, 0.0, -0.1]))
     with pytest.raises(rb.Unsupported, match="nothing in common"):
-        rb.export_dataset(scene, rb.Rig(lens, lens, backwards, np.array([0.1, 0, 0])), tmp_path / "out")
+        rb.export_dataset(scene, behind, tmp_path / "out")
     assert not (tmp_path / "out").exists()
 
 

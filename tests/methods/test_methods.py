@@ -8,9 +8,10 @@ from tests.rigs_for_tests import aligned_rig, points_before, rig
 
 METHODS = ("conventional", "abraham", "local-homography", "hartley", "fusiello")
 ANY_MOTION = ("polar", "log-polar", "polar-optimal")
+FROM_MATCHES = ("hartley", "fusiello")
 
 
-@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("method", [m for m in (*METHODS, *ANY_MOTION) if m not in FROM_MATCHES])
 def test_a_rig_that_sees_its_epipoles_is_rectified_but_for_what_is_about_them(method: str) -> None:
     forward = rig(centre_m=(0.02, 0.0, 0.3))
     rect = rb.rectify(forward, method=method)
@@ -20,6 +21,12 @@ def test_a_rig_that_sees_its_epipoles_is_rectified_but_for_what_is_about_them(me
     assert errors["row_error_matches"] > 20
     epipole, _ = forward.left.project(forward.centre_right_in_left)
     assert np.isnan(rect.left.forward(epipole)).all()
+
+
+@pytest.mark.parametrize("method", FROM_MATCHES)
+def test_homographies_end_where_the_undistorted_view_shows_an_epipole(method: str) -> None:
+    with pytest.raises(rb.Unsupported, match="an epipole lies in the undistorted view, which no homography"):
+        rb.rectify(rig(centre_m=(0.02, 0.0, 0.3)), method=method)
 
 
 @pytest.mark.parametrize("method", [*METHODS, *ANY_MOTION])

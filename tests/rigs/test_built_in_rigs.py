@@ -67,16 +67,6 @@ def test_name_source_and_place_are_right(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", rig_names())
-def test_both_epipoles_stay_out_of_the_view(name: str) -> None:
-    for motion in ("as-calibrated", "sideways"):
-        for seed in range(20):
-            rig = MOTIONS[motion].apply(load_rig(name), seed)
-            c, t = rig.centre_right_in_left, rig.t_right_left
-            assert not rig.left.sees([c, -c]).any()
-            assert not rig.right.sees([t, -t]).any()
-
-
-@pytest.mark.parametrize("name", rig_names())
 @pytest.mark.parametrize("side", ["left", "right"])
 def test_the_lens_covers_the_middle_of_its_image(name: str, side: str) -> None:
     camera: Camera = getattr(load_rig(name), side)
@@ -108,7 +98,7 @@ def test_canon_is_an_8_mm_lens_near_180_degrees() -> None:
     camera = load_rig("canon-8mm").left
     assert camera.size == (2736, 1842)
     assert camera.params["fx"] * 22.3 / 2736 == pytest.approx(8)
-    assert camera.max_angle_deg == 85
+    assert camera.max_angle_deg == 90
 
 
 def test_two_calibrations_of_the_tum_vi_rig_agree() -> None:
