@@ -43,13 +43,14 @@ def fisheye_rigs(least_fov_deg: float = FISHEYE_DEG) -> tuple[str, ...]:
     False
     """
     lenses = (name for name in rig_names() if name not in CALIBRATED_TWICE | MADE_UP)
-    return tuple(name for name in lenses if _fov_deg(name) >= least_fov_deg)
+    return tuple(name for name in lenses if _reaches(name, least_fov_deg / 2))
 
 
 @cache
-def _fov_deg(name: str) -> float:
-    """Of a rig that ships with rectbench; every report about fisheye lenses asks for that of all of them."""
-    return built_in_rig(name).fov_deg
+def _reaches(name: str, angle_deg: float) -> bool:
+    """Whether both lenses of a rig do; every report about fisheye lenses asks for that of all of them."""
+    rig = built_in_rig(name)
+    return rig.left.reaches(angle_deg) and rig.right.reaches(angle_deg)
 
 
 def built_in_rig(name: str) -> Rig:

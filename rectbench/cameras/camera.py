@@ -25,6 +25,8 @@ from rectbench.types import BoolArray, Constants, FloatArray
 
 _RIM_POINTS, _HALVINGS = 33, 34
 """On each side of an image, to find how far a lens sees; and steps from its centre to where it ends."""
+_AZIMUTHS = 720
+"""About the axis, at which a lens is asked whether it sees as far as an angle."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -130,6 +132,22 @@ class Camera(Projection):
         u, v = np.linspace(-0.5, right, points), np.linspace(-0.5, bottom, points)
         sides = ((u, -0.5), (u, bottom), (-0.5, v), (right, v))
         return np.concatenate([np.stack(np.broadcast_arrays(*side), axis=-1) for side in sides])
+
+    def reaches(self, angle_deg: float) -> bool:
+        """Whether the image shows anything as far from the axis as this, blind parts aside.
+
+        >>> import rectbench as rb
+        >>> lens = rb.load_rig("t265").left
+        >>> lens.reaches(79), lens.reaches(81)
+        (True, False)
+        """
+        rays, seen = self.whole.unproject(self.rim(_RIM_POINTS))
+        if (rays[seen, 2] <= math.cos(math.radians(angle_deg))).any():
+            return True
+        azimuth = np.linspace(0.0, 2 * math.pi, _AZIMUTHS, endpoint=False)
+        around = np.stack([np.cos(azimuth), np.sin(azimuth)], axis=-1) * math.sin(math.radians(angle_deg))
+        along = np.full((_AZIMUTHS, 1), math.cos(math.radians(angle_deg)))
+        return bool(self.whole.sees(np.concatenate([around, along], axis=-1)).any())
 
     @property
     def fov_deg(self) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
@@ -17,7 +18,7 @@ from rectbench.reporting.page import render_page
 from rectbench.reporting.sources import sources_of
 from rectbench.reporting.tables.part_tables import all_tables
 from rectbench.reporting.tables.table import SPELLINGS, Table
-from rectbench.runs.run import read_run
+from rectbench.runs.run import Run, read_run
 from rectbench.writing import write_atomically
 
 MANIFEST = "figures/manifest.json"
@@ -50,16 +51,17 @@ def write_report(
     run_dir = Path(run_dir)
     run = read_run(run_dir)
     manifest = _read_manifest(run_dir)
-    tables = list(all_tables(run))
-    written = [path for table in tables for path in _write_table(run_dir, table)]
     drawings = placed_drawings(run, sources or sources_of(run))
     with ExitStack() as stack:
+        # While others draw, this process has time for the tables.
+        beside = stack.enter_context(ThreadPoolExecutor(1)).submit(_write_tables, run_dir, run)
         if sources is None:
             draw = draw_in_workers(run, workers or stack.enter_context(workers_for(run.record.spec)))
         else:
             draw = draw_here(run_dir)
         advance = stack.enter_context((progress or Progress()).stage("figures", len(drawings)))
         drawn, digests = draw_changed(run_dir, drawings, manifest["figures"], draw, advance)
+    tables, written = beside.result()
     written += [figure.placed.path(e) for figure in drawn if figure.there for e in EXTENSIONS]
     _remove_leftovers(run_dir, set(manifest["files"]) - set(written))
     write_atomically(run_dir / "index.html", render_page(run, tables, drawn))
@@ -67,6 +69,12 @@ def write_report(
     if fresh != manifest:
         write_atomically(run_dir / MANIFEST, json.dumps(fresh, indent=1) + "\n")
     return run_dir / "index.html"
+
+
+def _write_tables(folder: Path, run: Run) -> tuple[list[Table], list[str]]:
+    """The tables of a run, and the files that they are written to."""
+    tables = list(all_tables(run))
+    return tables, [path for table in tables for path in _write_table(folder, table)]
 
 
 def _write_table(folder: Path, table: Table) -> list[str]:

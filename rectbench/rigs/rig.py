@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from pathlib import Path
 from typing import Any, ClassVar, Protocol
 
@@ -178,8 +179,8 @@ class Rig:
         margin_deg = checked_margin(margin_deg)
         whole = self.whole
         towards = whole.centre_right_in_left / whole.baseline_m
-        left = _blind_about(whole.left, towards, margin_deg)
-        right = _blind_about(whole.right, whole.R_right_left @ towards, margin_deg)
+        left = _blind_about(whole.left, Cones(tuple(towards.tolist()), margin_deg))
+        right = _blind_about(whole.right, Cones(tuple((whole.R_right_left @ towards).tolist()), margin_deg))
         return replace(whole, left=left, right=right)
 
     @property
@@ -221,9 +222,9 @@ class Rig:
         return Rig.writer(self, path, format)
 
 
-def _blind_about(camera: Camera, direction: FloatArray, margin_deg: float) -> Camera:
-    """The camera, blind about this line if it sees anything there."""
-    cones = Cones(tuple(direction.tolist()), margin_deg)
+@lru_cache(maxsize=64)
+def _blind_about(camera: Camera, cones: Cones) -> Camera:
+    """The camera, blind in these cones if it sees anything there; all methods of a rig ask for the same."""
     rays, seen = camera.unproject(camera.rim(RIM_POINTS))
     reaches = camera.sees(cones.rays()).any() or cones.hold(rays[seen]).any()
     return replace(camera, blind=cones) if reaches else camera

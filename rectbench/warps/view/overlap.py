@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 
 from rectbench.errors import Unsupported
@@ -31,13 +33,19 @@ def overlap_share(rig: Rig, count: int = SAMPLED_PIXELS) -> float:
 
 def require_overlap(rig: Rig) -> None:
     """Raise Unsupported, with how the cameras stand, where the views have nothing in common."""
-    if overlap_share(rig) or overlap_share(rig, LEAST_SHARE_PIXELS):
+    if _overlap(rig):
         return
     raise Unsupported(
         f"the two views of rig {rig.name} have nothing in common: their overlap is 0 %, the cameras look "
         f"{_apart_deg(rig.R_right_left):.0f} degrees apart with lenses of {rig.left.fov_deg:.0f} and "
         f"{rig.right.fov_deg:.0f} degrees"
     )
+
+
+@lru_cache(maxsize=64)
+def _overlap(rig: Rig) -> bool:
+    """Whether they have anything in common; all methods of a rig ask for the same."""
+    return bool(overlap_share(rig) or overlap_share(rig, LEAST_SHARE_PIXELS))
 
 
 def _apart_deg(R: FloatArray) -> float:
