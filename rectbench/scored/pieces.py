@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +22,8 @@ from rectbench.warps.targets import Framed
 from rectbench.warps.warp import Warp
 
 PIECES = 12_000
-"""In a frame, about. The log distortion of 95 % of the view is then right to a thousandth."""
+"""In a frame, about. The log distortion of 95 % of the view is then right to a thousandth; to a hundredth
+where the view goes up to the epipoles and a map squeezes its outermost rows."""
 FEWEST_PIECES = 6_000
 """In the source image; where a table has fewer, a finer one of the same map is looked at."""
 LARGEST_TABLE = 2_000_000
@@ -114,7 +116,12 @@ class Pieces:
     def between(cls, sheet: Sheet, count: float) -> Pieces:
         """About `count` pieces of a frame, those of them that show the source."""
         spacing = math.sqrt(math.prod(sheet.size) / count)
-        columns, rows = (_spread(side, spacing) for side in sheet.size)
+        columns, rows = (_spread(0, side - 1, spacing) for side in sheet.size)
+        seen = [layer != OUTSIDE for layer in (sheet.table[0][:, columns], sheet.table[0][rows])]
+        columns, rows = (
+            _about(shown, side, spacing)
+            for shown, side in zip((seen[1].any(axis=0), seen[0].any(axis=1)), sheet.size, strict=True)
+        )
         corners, known = _corners(sheet.table, columns, rows)
         quads = corners[:, :-1, :-1], corners[:, :-1, 1:], corners[:, 1:, :-1], corners[:, 1:, 1:]
         knowns = known[:-1, :-1], known[:-1, 1:], known[1:, :-1], known[1:, 1:]
@@ -160,7 +167,7 @@ class Pieces:
         if not self.count:
             return held
         place = self.sheet.place(px_rect)
-        spacing = np.array([self.columns[1] - self.columns[0], self.rows[1] - self.rows[0]])
+        spacing = np.array([np.median(np.diff(places)) for places in (self.columns, self.rows)])
         step_px = 2 * self.halves[:, self._nearest(place)].T / spacing
         nearest = np.rint(place).astype(np.intp)
         held |= self._has_near(pixels, nearest, step_px + ROUNDING_PX)
@@ -235,10 +242,23 @@ def _drop_far_sides(shows: BoolArray, quads: Sequence[FloatArray], known: BoolAr
     shows[rows[off], columns[off]] = camera.whole.sees(rays)
 
 
-def _spread(side: int, spacing: float) -> NDArray[np.intp]:
-    """Whole numbers from the first to the last of a side, about so far apart."""
-    steps = max(1, min(side - 1, round((side - 1) / spacing)))
-    return np.rint(np.linspace(0, side - 1, steps + 1)).astype(np.intp)
+def _about(shown: BoolArray, side: int, spacing: float) -> NDArray[np.intp]:
+    """Whole numbers from 0 to `side` - 1 about so far apart, the first and the last `shown` among them.
+
+    Up to those a table tells its derivative; a corner beyond them would have to be guessed.
+    """
+    places = np.flatnonzero(shown)
+    if not len(places) or places[0] == places[-1]:
+        return _spread(0, side - 1, spacing)
+    ends = np.unique([0, places[0], places[-1], side - 1])
+    spans = [_spread(first, last, spacing)[:-1] for first, last in pairwise(ends.tolist())]
+    return np.concatenate([*spans, ends[-1:]])
+
+
+def _spread(first: int, last: int, spacing: float) -> NDArray[np.intp]:
+    """Whole numbers from the first to the last, about so far apart."""
+    steps = max(1, min(last - first, round((last - first) / spacing)))
+    return np.rint(np.linspace(first, last, steps + 1)).astype(np.intp)
 
 
 def _intervals(sides: NDArray[np.intp]) -> NDArray[np.intp]:
@@ -275,17 +295,20 @@ def _extended(
     along: int,
     step: int,
 ) -> FloatArray:
-    """Corners [2, K] wanted at (rows, columns), by the straight line through the next two.
+    """Corners [2, K] wanted at (rows, columns), by the parabola through the next three, or the line of two.
 
-    Those follow after a step and two steps along rows (0) or columns (1), which stand at `places` of the
-    table.
+    Those follow step by step along rows (0) or columns (1), which stand at `places` of the table.
     """
     at = wanted[along]
-    near, far = (np.clip(at + steps, 0, len(places) - 1) for steps in (step, 2 * step))
-    first, second = (
-        corners[:, index, wanted[1]] if along == 0 else corners[:, wanted[0], index] for index in (near, far)
+    indices = [np.clip(at + steps * step, 0, len(places) - 1) for steps in (1, 2, 3)]
+    first, second, third = (
+        corners[:, index, wanted[1]] if along == 0 else corners[:, wanted[0], index] for index in indices
     )
-    with np.errstate(divide="ignore", invalid="ignore"):
-        reach = (places[at] - places[near]) / (places[near] - places[far])  # infinite at the table's end
-        extended: FloatArray = first + reach * (first - second)
+    x, (x1, x2, x3) = places[at], (places[index] for index in indices)
+    with np.errstate(divide="ignore", invalid="ignore"):  # infinite at the table's end
+        slope = (first - second) / (x1 - x2)
+        bend = (slope - (second - third) / (x2 - x3)) / (x1 - x3)
+        line = first + slope * (x - x1)
+        parabola = line + bend * (x - x1) * (x - x2)
+    extended: FloatArray = np.where(np.isfinite(parabola), parabola, line)
     return extended

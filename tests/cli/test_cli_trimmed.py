@@ -51,9 +51,9 @@ def test_a_seam_is_wrapped_where_there_is_one(shell: Shell, pair: list[str]) -> 
 @pytest.mark.parametrize(
     ("words", "told"),
     [
-        (("--margin-deg", "0"), "margin_deg is 0.0; expected degrees above 0, at most 45"),
-        (("--margin-deg", "nan"), "margin_deg is nan; expected degrees above 0, at most 45"),
-        (("--margin-deg", "50"), "margin_deg is 50.0; expected degrees above 0, at most 45"),
+        (("--margin-deg", "0"), "--margin-deg is 0.0; expected degrees above 0, at most 45"),
+        (("--margin-deg", "nan"), "--margin-deg is nan; expected degrees above 0, at most 45"),
+        (("--margin-deg", "50"), "--margin-deg is 50.0; expected degrees above 0, at most 45"),
         (("--seam", "wrap", "-m", "conventional"), "a perspective image has none"),
         (("--seam", "sewn"), "seam is 'sewn'"),
     ],
@@ -72,7 +72,7 @@ def test_what_cannot_be_is_one_line_and_leaves_nothing(
 def test_other_verbs_refuse_a_margin_out_of_range_too(shell: Shell, verb: tuple[str, ...]) -> None:
     code, _, err = shell(*verb, "--margin-deg", "-3")
     assert code == 2
-    assert "margin_deg is -3.0; expected degrees above 0, at most 45" in err
+    assert "--margin-deg is -3.0; expected degrees above 0, at most 45" in err
 
 
 def test_a_pair_given_right_camera_first_is_told_of_its_disparities(shell: Shell, pair: list[str]) -> None:

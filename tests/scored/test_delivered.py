@@ -66,6 +66,8 @@ def test_the_score_is_that_of_exact_derivatives_everywhere(name: str, method: st
     for share in {0.1, 0.4, 0.95, 1.0} & set(delivered.shares_kept):
         expected = by_exact_derivatives(rect, view, share)
         rel = 1e-3 if share == 0.95 else 6e-3  # a small part of the view has few pieces
+        if pair.trimmed() != pair:  # rows are squeezed where the view goes up to the epipoles
+            rel = 8e-3
         assert delivered.log_distortion(share) == pytest.approx(expected, rel=rel)
 
 
