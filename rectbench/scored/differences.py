@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from rectbench.types import FloatArray
-from rectbench.warps.rectification import across_seam
 from rectbench.warps.warp import Warp
 
 ARM_PX = 0.5
@@ -18,16 +17,15 @@ def differences(
 ) -> tuple[FloatArray, FloatArray]:
     """Where pixels [N, 2] go, [N, 2], and the derivative there by differences over two arms, [N, 2, 2].
 
-    At the end of a map's domain the difference is over the one arm that there is. Across the seam of rows
-    that begin again after `turn_px`, see `Rectification.turn_px`, it is what it is beside it.
+    At the end of a map's domain the difference is over the one arm that there is. So it is at the seam of
+    rows that begin again after `turn_px`, see `Rectification.turn_px`: a map may bend there.
     """
     middle, *arms = np.moveaxis(warp.forward(pixels[:, None] + arm_px * CROSS), 1, 0)
+    farthest = np.inf if turn_px is None else turn_px / 2
     columns = []
     for ends in (arms[:2], arms[2:]):
-        known = [np.isfinite(arm) for arm in ends]
+        known = [np.isfinite(arm) & (np.abs(arm[:, 1] - middle[:, 1]) <= farthest)[:, None] for arm in ends]
         first, last = (np.where(there, arm, middle) for there, arm in zip(known, ends, strict=True))
         with np.errstate(invalid="ignore", divide="ignore"):
-            step = last - first
-            step[:, 1] = across_seam(step[:, 1], turn_px)
-            columns.append(step / (arm_px * (known[0].astype(float) + known[1])))
+            columns.append((last - first) / (arm_px * (known[0].astype(float) + known[1])))
     return middle, np.stack(columns, axis=-1)

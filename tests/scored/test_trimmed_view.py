@@ -7,6 +7,7 @@ import rectbench as rb
 from rectbench.metrics import coverage
 from rectbench.rigs.poses import PoseNoise, perturb
 from rectbench.scored import Delivered, ScoredView, SeenView, check_agreement
+from rectbench.scored.differences import differences
 from tests.rigs_for_tests import rig
 
 FORWARD = rig(rotation_deg=(2.0, -3.0, 1.0), centre_m=(0.03, 0.01, 0.3), fov_deg=150)
@@ -61,6 +62,19 @@ def test_the_score_is_that_of_exact_derivatives_outside_the_cones(pair: rb.Rig) 
     J = np.concatenate([rect.warp(side).jacobian(view.side(side).pixels) for side in ("left", "right")])
     expected = float(np.std(np.log(np.linalg.svd(J, compute_uv=False))))
     assert Delivered.of(rect, view).log_distortion(1.0) == pytest.approx(expected, rel=0.02)
+
+
+@pytest.mark.parametrize("method", ["local-homography", "polar-optimal"])
+def test_at_the_seam_a_derivative_is_that_of_its_own_side(method: str) -> None:
+    rect = rb.rectify(FORWARD, method=method)
+    assert rect.turn_px is not None
+    columns = np.linspace(0.2, 0.8, 50) * rect.size[0]
+    for row in (-0.499, rect.turn_px - 0.501):  # both sides of β = ±180°, a thousandth of a row away
+        pixels = rect.left.inverse(np.stack([columns, np.full(50, row)], axis=-1))
+        pixels = pixels[np.isfinite(pixels).all(axis=1)]
+        assert len(pixels) > 10
+        _, J = differences(rect.left, pixels, 5e-3, rect.turn_px)
+        np.testing.assert_allclose(J, rect.left.jacobian(pixels), rtol=1e-3, atol=1e-3)
 
 
 def test_coverage_counts_what_was_trimmed_against_the_whole_lens() -> None:
