@@ -27,14 +27,22 @@ def lasting(monkeypatch: pytest.MonkeyPatch) -> Callable[[Iterator[float]], Call
 
 
 def test_times_are_warm_and_the_best_of_three(lasting: Callable[..., Callable[[], str]]) -> None:
-    naps = iter([0.2, 0.03, 0.01, 0.05])
-    assert warm_seconds(lasting(naps)) == pytest.approx(0.01)
+    naps = iter([0.2, 0.003, 0.001, 0.005])
+    assert warm_seconds(lasting(naps)) == pytest.approx(0.001)
     assert next(naps, None) is None
 
 
 def test_a_first_call_that_was_made_is_not_made_again(lasting: Callable[..., Callable[[], str]]) -> None:
-    naps = iter([0.03, 0.01, 0.05])
-    assert warm_seconds(lasting(naps), first_s=0.2) == pytest.approx(0.01)
+    naps = iter([0.003, 0.001, 0.005])
+    assert warm_seconds(lasting(naps), first_s=0.2) == pytest.approx(0.001)
+
+
+def test_no_further_call_is_made_once_they_took_long_enough(
+    lasting: Callable[..., Callable[[], str]],
+) -> None:
+    naps = iter([0.5, 0.02, 0.025, 0.01])
+    assert warm_seconds(lasting(naps)) == pytest.approx(0.02)
+    assert list(naps) == [0.01]
 
 
 def test_a_slow_call_is_made_once(lasting: Callable[..., Callable[[], str]]) -> None:
