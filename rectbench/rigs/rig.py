@@ -222,12 +222,16 @@ class Rig:
         return Rig.writer(self, path, format)
 
 
-@lru_cache(maxsize=64)
 def _blind_about(camera: Camera, cones: Cones) -> Camera:
-    """The camera, blind in these cones if it sees anything there; all methods of a rig ask for the same."""
+    """The camera, blind in these cones if it sees anything there."""
+    return replace(camera, blind=cones) if _reaches(camera, cones) else camera
+
+
+@lru_cache(maxsize=64)
+def _reaches(camera: Camera, cones: Cones) -> bool:
+    """Whether the camera sees anything in these cones; all methods of a rig ask for the same."""
     rays, seen = camera.unproject(camera.rim(RIM_POINTS))
-    reaches = camera.sees(cones.rays()).any() or cones.hold(rays[seen]).any()
-    return replace(camera, blind=cones) if reaches else camera
+    return bool(camera.sees(cones.rays()).any() or cones.hold(rays[seen]).any())
 
 
 @np.errstate(over="ignore", invalid="ignore")
