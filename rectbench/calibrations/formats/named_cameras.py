@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import TypeVar
 
@@ -12,7 +11,7 @@ from scipy.spatial.transform import Rotation
 
 from rectbench.calibrations.assembling import Pair, chosen, rig_of_posed
 from rectbench.calibrations.contract import Given, PosedCamera
-from rectbench.calibrations.documents import Section, Source, one_line, tell
+from rectbench.calibrations.documents import Section, Source, tell
 from rectbench.errors import InvalidInput, argument
 from rectbench.rigs.rig import Rig
 from rectbench.types import FloatArray
@@ -24,14 +23,6 @@ QUATERNION_TOLERANCE = 1e-3
 
 Y_UP_Z_BACK = np.diag([1.0, -1.0, -1.0, 1.0])
 """Turns a camera of x right, y down, z forward into one of x right, y up, z back, and the other way."""
-
-
-OF_A_LENS_OR_POSE = re.compile(
-    r"dist|coeff|model|lens|focal|fov|princip|center|centre|optical|intrin|extrin|rotat|transl|pose|quat|turn"
-    r"|correct|2rig|rigid|poly|theta|linear|ratio|aspect|skew|offset|angle|^[kps]\d|^[cf][xyl]|^b\d|^[rtkdp]$",
-    re.IGNORECASE,
-)
-"""What keys of a lens or of a pose are called, in files whose other keys are anybody's."""
 
 
 def rig_of_named(
@@ -94,15 +85,6 @@ def quaternion_rotation(where: str, wxyz: Sequence[float]) -> FloatArray:
         raise InvalidInput(f"{where} is a quaternion of length {length:g}; expected 1")
     w, x, y, z = wxyz
     return Rotation.from_quat([x, y, z, w]).as_matrix()
-
-
-def refuse_unread(section: Section, known: Collection[str]) -> None:
-    """Raise for a key that seems to be of a lens or a pose and is none of those known."""
-    for key in section.values:
-        if key not in known and OF_A_LENS_OR_POSE.search(key):
-            raise InvalidInput(
-                f"{section.at('')}{one_line(key)!r} is not known here; expected it to be left out"
-            )
 
 
 def tell_missing(section: Section, keys: Iterable[str], taken: str) -> None:

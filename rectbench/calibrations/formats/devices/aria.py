@@ -19,7 +19,6 @@ from rectbench.calibrations.documents import Section, Source
 from rectbench.calibrations.formats.named_cameras import (
     by_name,
     quaternion_rotation,
-    refuse_unread,
     rig_of_named,
 )
 from rectbench.errors import InvalidInput
@@ -54,7 +53,6 @@ def _read(sources: Sequence[Source], given: Given) -> Rig:
 def _read_posed(section: Section, size: tuple[int, int]) -> PosedCamera:
     if section.values.get("Calibrated", True) is not True:
         raise section.fault("Calibrated", "true")
-    refuse_unread(section, ())
     projection = section.section("Projection", "Name and Params")
     projection.only(("Name", "Params", "Description", "ProjectionModel"))
     projection.knows("Description", "ProjectionModel")  # of the names in words

@@ -34,7 +34,6 @@ from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents import Section, Source, errors_at
 from rectbench.calibrations.formats.named_cameras import (
     by_name,
-    refuse_unread,
     rig_of_named,
     tell_missing,
     told_scale,
@@ -65,15 +64,9 @@ TYPES = {
 }
 """The distortion of each type, where `distortionType` does not say it."""
 
-INTRINSIC_KEYS = (
-    *("intrinsicId", "width", "height", "sensorWidth", "sensorHeight", "serialNumber", "type", "locked"),
-    *("initializationMode", "initialFocalLength", "pxInitialFocalLength", "focalLength", "pxFocalLength"),
-    *("pixelRatio", "pixelRatioLocked", "offsetLocked", "scaleLocked", "principalPoint"),
-    *("distortionInitializationMode", "distortionParams", "distortionLocked", "distortionType"),
-    *("undistortionOffset", "undistortionParams", "undistortionType"),
-)
-VIEW_KEYS = ("viewId", "poseId", "rigId", "subPoseId", "intrinsicId", "isPoseIndependant", "frameId")
-"""Those of every version's intrinsics and views that say anything of a lens or a pose."""
+OF_THE_SEARCH = ("initial*", "pxInitial*", "*Locked", "locked", "distortionInitializationMode")
+"""Keys of how a lens was sought, and not of what was found."""
+
 
 Version = tuple[float, ...]
 
@@ -120,8 +113,6 @@ def _views(file: Section) -> list[tuple[str, _View]]:
     poses, rigs = _by_number(file, "poses", "poseId"), _by_number(file, "rigs", "rigId")
     found = []
     for number, view in _by_number(file, "views", "viewId").items():
-        refuse_unread(view, VIEW_KEYS)
-        view.knows(*VIEW_KEYS)
         pose = poses.get(_number(view, "poseId"))
         if pose is None:
             continue
@@ -155,8 +146,7 @@ def _transform(section: Section) -> FloatArray:
 
 
 def _camera(section: Section, version: Version, given: Given) -> Camera:
-    refuse_unread(section, INTRINSIC_KEYS)
-    section.knows(*INTRINSIC_KEYS)
+    section.knows(*OF_THE_SEARCH)
     kind = section.choice("type", TYPES)
     distortion = section.choice("distortionType", DISTORTIONS) if "distortionType" in section else TYPES[kind]
     if distortion != TYPES[kind] and kind != "pinhole":

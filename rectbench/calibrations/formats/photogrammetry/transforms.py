@@ -26,7 +26,6 @@ from rectbench.calibrations.documents import Section, Source, shown, tell
 from rectbench.calibrations.formats.named_cameras import (
     Y_UP_Z_BACK,
     by_name,
-    refuse_unread,
     rig_of_named,
     tell_missing,
     told_scale,
@@ -97,7 +96,6 @@ def _read_posed(file: Section, frame: Section, given: Given) -> PosedCamera:
 def _lens(file: Section, frame: Section) -> Section:
     """The keys of the frame's lens, its own and the file's, which may not disagree."""
     for section in (file, frame):
-        refuse_unread(section, (*LENS, *OTHER_KEYS))
         section.knows(*LENS, *OTHER_KEYS)
     values = {key: file.values[key] for key in LENS if key in file}
     for key in LENS:

@@ -17,7 +17,7 @@ from scipy.spatial.transform import Rotation
 from rectbench.calibrations.assembling import rigid, single
 from rectbench.calibrations.contract import Given, PosedCamera, RigFormat
 from rectbench.calibrations.documents import Section, Source, finite_number
-from rectbench.calibrations.formats.named_cameras import by_name, refuse_unread, rig_of_named, tell_missing
+from rectbench.calibrations.formats.named_cameras import by_name, rig_of_named, tell_missing
 from rectbench.calibrations.formats.vehicles.f_theta_keys import f_theta_camera
 from rectbench.errors import InvalidInput
 from rectbench.rigs.rig import Rig
@@ -56,8 +56,6 @@ def _is_camera(sensor: Section) -> bool:
 
 def _read_posed(sensor: Section, given: Given) -> PosedCamera:
     properties = sensor.section("properties", "the lens")
-    refuse_unread(sensor, ("properties", POSE, TURN, SHIFT))
-    refuse_unread(properties, ("Model", "cx", "cy", "polynomial-type", *POLYNOMIALS, *LINEAR))
     properties.choice("Model", ("ftheta",))
     size = properties.sides("width", "height", given.size)
     centre = (properties.number("cx", "pixels") - 0.5, properties.number("cy", "pixels") - 0.5)

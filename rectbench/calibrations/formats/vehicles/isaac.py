@@ -15,7 +15,7 @@ import numpy as np
 from rectbench.calibrations.assembling import camera_of, inverse
 from rectbench.calibrations.contract import CameraFormat, Given, PosedCamera
 from rectbench.calibrations.documents import Section, Source, agreed_size, errors_at, tell
-from rectbench.calibrations.formats.named_cameras import Y_UP_Z_BACK, refuse_unread
+from rectbench.calibrations.formats.named_cameras import Y_UP_Z_BACK
 from rectbench.calibrations.formats.vehicles.f_theta_keys import f_theta_camera
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
@@ -29,19 +29,6 @@ OFFSET = "cameraApertureOffset"
 RESOLUTION = "renderProductResolution"
 UNIT = "metersPerSceneUnit"
 MAX_COEFFICIENTS = 12
-KEYS = (
-    *(POLYNOMIAL, VIEW, *NOMINAL, OFFSET, RESOLUTION, "cameraModel", "cameraFisheyeOpticalCentre"),
-    *(
-        "cameraFisheyeMaxFOV",
-        "cameraFisheyeLensP",
-        "cameraFisheyeLensS",
-        "cameraAperture",
-        "cameraFocalLength",
-    ),
-    *("cameraFocusDistance", "cameraFStop", "cameraNearFar", "cameraProjection", "cameraProjectionType"),
-    *("cameraOpenCVFx", "cameraOpenCVFy"),
-)
-"""Those of the annotator; some are of models that are refused."""
 
 OF_OTHERS = {
     "pinhole": ("cameraFisheye*", "cameraOpenCV*"),
@@ -53,7 +40,6 @@ OF_OTHERS = {
 def read_posed(source: Source, given: Given) -> PosedCamera:
     """The camera in the file, posed in the scene, metres."""
     file = source.document
-    refuse_unread(file, KEYS)
     size = agreed_size(file.at(RESOLUTION), file.numbers(RESOLUTION, "[width, height]", 2), given.size)
     kind = file.choice("cameraModel", ("pinhole", "fisheyePolynomial"))
     file.knows(*OF_OTHERS[kind])
