@@ -71,8 +71,7 @@ def _pairs(names: Sequence[str], rig_of: Callable[[Pair], Rig]) -> Iterator[str]
             rig = rig_of((left, right))
         except InvalidInput:
             continue
-        x, y, z = rig.centre_right_in_left
-        if x < -max(abs(y), abs(z)):
+        if rig.is_right_first:
             left, right = right, left
         share = overlap(rig)
         told = f"baseline {rig.baseline_m:.3g} m, {100 * share:.0f} % of the view in common"

@@ -126,11 +126,10 @@ def _read_by(format: RigFormat | CameraFormat, sources: list[Source], given: Giv
 
 def _checked_order(rig: Rig) -> Rig:
     """The rig as it is, with a warning in the log where its right camera stands on the left."""
-    x, y, z = rig.centre_right_in_left
-    if x < -max(abs(y), abs(z)):
+    if rig.is_right_first:
         tell(
-            f"{rig.name}: the right camera stands {-x:.3g} m to the left of the left one; kept as the "
-            "calibration has it, to be named in the other order if that is not meant"
+            f"{rig.name}: the right camera stands {-rig.centre_right_in_left[0]:.3g} m to the left of the "
+            "left one; kept as the calibration has it, to be named in the other order if that is not meant"
         )
     return rig
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
@@ -10,6 +11,7 @@ from typing import Any, ClassVar, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.spatial.transform import Rotation
 
 from rectbench.cameras import Camera, Cones
 from rectbench.cameras.projection import as_points
@@ -24,6 +26,7 @@ EXACT_ROTATION = 1e-14
 """Below this RᵀR - 1 is float64 rounding, and the matrix is kept to the last bit."""
 
 
+RIGHT_FIRST_COSINE = math.cos(math.radians(45.0))
 RIM_POINTS = 257
 """On each side of an image, to tell whether a corner of it reaches into the cones."""
 
@@ -107,6 +110,21 @@ class Rig:
         array([ 0.064,  0.   , -0.   ])
         """
         return -self.R_right_left.T @ self.t_right_left
+
+    @property
+    def is_right_first(self) -> bool:
+        """Whether it is a pair side by side with the right camera on the left: nearer to -x than 45°.
+
+        In the mean of the two cameras' frames. Such a pair keeps its images upright when it is rectified, and
+        has negative disparities.
+
+        >>> import rectbench as rb
+        >>> rb.load_rig("t265").is_right_first
+        False
+        """
+        half = Rotation.from_matrix(self.R_right_left).as_rotvec() / 2
+        towards = Rotation.from_rotvec(half).apply(self.centre_right_in_left)
+        return bool(towards[0] < -RIGHT_FIRST_COSINE * self.baseline_m)
 
     @property
     def essential_matrix(self) -> FloatArray:

@@ -21,8 +21,6 @@ from rectbench.types import FloatArray
 
 EDGE_STEP_RAD = 1e-6
 """An epipole nearer to the edge of the view than this counts as lying on the edge, outside."""
-SWAPPED_COSINE = math.cos(math.radians(45.0))
-"""A baseline nearer to the camera's -x than 45° is that of a pair side by side, right camera first."""
 SEAM_STEPS = 180
 """Angles β, 2° apart, among which the seam is placed,"""
 SEAM_PLACES = 91
@@ -34,8 +32,8 @@ def rectifying_rotations(rig: Rig) -> tuple[FloatArray, FloatArray]:
     """(R_rect_left, R_rect_right), camera to rectified frame, after Bouguet; read-only.
 
     Each camera takes half the relative rotation; then the smallest rotation lays the baseline on the x axis,
-    so that disparities are positive. Of a pair side by side that is given right camera first it is laid on
-    the opposite direction: its images stay upright, and `signed_baseline_m` is below zero.
+    so that disparities are positive. Of a pair that is given right camera first (`Rig.is_right_first`) it is
+    laid on the opposite direction: its images stay upright, and `signed_baseline_m` is below zero.
 
     Where the lenses see β = ±180°, as where the view goes round an epipole, the frame is turned about the
     baseline, so that this seam cuts the least: to the middle of the largest gap between the angles β that
@@ -62,7 +60,7 @@ def forward_rotations(rig: Rig) -> tuple[FloatArray, FloatArray]:
     R_mid_left = Rotation.from_rotvec(half).as_matrix()
     R_mid_right = Rotation.from_rotvec(-half).as_matrix()
     baseline = R_mid_left @ rig.centre_right_in_left / rig.baseline_m
-    R_rect_mid = _smallest_rotation_onto_x(baseline)
+    R_rect_mid = _smallest_rotation(baseline, np.array([-1.0 if rig.is_right_first else 1.0, 0.0, 0.0]))
     return R_rect_mid @ R_mid_left, R_rect_mid @ R_mid_right
 
 
@@ -108,9 +106,8 @@ def signed_baseline_m(rig: Rig) -> float:
     return float((R_rect_left @ rig.centre_right_in_left)[0])
 
 
-def _smallest_rotation_onto_x(direction: FloatArray) -> FloatArray:
-    """The rotation of least angle that takes `direction` to the x axis; to -x that of a swapped pair."""
-    target = np.array([-1.0 if direction[0] < -SWAPPED_COSINE else 1.0, 0.0, 0.0])
+def _smallest_rotation(direction: FloatArray, target: FloatArray) -> FloatArray:
+    """The rotation of least angle that takes one unit vector [3] to another."""
     w = np.cross(direction, target)
     cross = np.array([[0, -w[2], w[1]], [w[2], 0, -w[0]], [-w[1], w[0], 0]])
     rotation: FloatArray = np.eye(3) + cross + cross @ cross / (1 + direction @ target)

@@ -23,7 +23,6 @@ from rectbench.pairs.finding.names import FilePair, LeftOut
 from rectbench.rigs import Rig
 from rectbench.types import Images, Matches
 from rectbench.warps import Rectification
-from rectbench.warps.frame import signed_baseline_m
 
 ELSEWHERE_PX = 5.0
 """Rows farther off than this, source pixels, are no matter of a calibration's accuracy."""
@@ -124,7 +123,7 @@ class RectifiedImages:
         told = []
         if trimmed and rig.margin_deg is not None:
             told.append(trimmed_text(trimmed, rig.margin_deg))
-        if signed_baseline_m(rig) < 0:
+        if rig.is_right_first:
             told.append(
                 "disparities are negative: by the calibration the right camera stands to the other's left"
             )
