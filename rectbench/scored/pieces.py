@@ -167,8 +167,8 @@ class Pieces:
         if not self.count:
             return held
         place = self.sheet.place(px_rect)
-        spacing = np.array([np.median(np.diff(places)) for places in (self.columns, self.rows)])
-        step_px = 2 * self.halves[:, self._nearest(place)].T / spacing
+        pieces = self._nearest(place)
+        step_px = (2 * self.halves[:, pieces] / self._entries_across[:, pieces]).T
         nearest = np.rint(place).astype(np.intp)
         held |= self._has_near(pixels, nearest, step_px + ROUNDING_PX)
         for offset in np.ndindex(5, 5):  # beside the rim of what the lens sees entries are missing
@@ -178,6 +178,13 @@ class Pieces:
             within_px = 2 * step_px[left] + ROUNDING_PX
             held[left] = self._has_near(pixels[left], nearest[left] + np.array(offset) - 2, within_px)
         return held
+
+    @property
+    def _entries_across(self) -> NDArray[np.intp]:
+        """[2, M], how many entries each is wide and high."""
+        steps = np.stack(np.meshgrid(np.diff(self.columns), np.diff(self.rows)))
+        across: NDArray[np.intp] = steps[:, self.numbers >= 0]
+        return across
 
     def _has_near(self, pixels: FloatArray, places: NDArray[np.intp], within_px: FloatArray) -> BoolArray:
         """Mask [K], whether entries at whole places [K, 2] of the sheet are so near to pixels [K, 2]."""

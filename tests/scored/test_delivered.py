@@ -81,6 +81,15 @@ def test_a_small_image_is_scored_as_a_large_one(width: int) -> None:
     assert small == pytest.approx(large, rel=0.04)  # half a pixel of rim is more of a small image
 
 
+@pytest.mark.parametrize("name", rb.fisheye_rigs())
+def test_what_is_shown_at_the_very_rim_of_a_frame_is_found_there(name: str) -> None:
+    pair = rb.load_rig(name)
+    pair = pair.scaled(640 / pair.left.width)
+    found = Delivered.of(rb.rectify(pair, method="local-homography"), ScoredView.of(pair))
+    assert found.left.shown.all()
+    assert found.right.shown.all()
+
+
 def test_a_method_that_shows_all_keeps_all_and_one_that_crops_does_not() -> None:
     pair = rb.load_rig("t265")
     view = ScoredView.of(pair)
