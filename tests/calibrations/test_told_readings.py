@@ -1,4 +1,4 @@
-"""What the newer formats say in several ways, or leave open, is read as it is meant; what is taken is told."""
+"""What newer formats say in several ways, or leave open, is read as it is meant; what is taken is told."""
 
 from __future__ import annotations
 
