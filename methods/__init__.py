@@ -1,1 +1,1 @@
-"""The rectifiers, one file each."""
+"""The rectifiers, one file each, by what they take for the image of a camera."""

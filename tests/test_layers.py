@@ -137,6 +137,8 @@ def test_a_crowded_and_a_silent_folder_are_named(tmp_path: Path) -> None:
 
 def test_each_folder_is_installed_with_the_package() -> None:
     project = tomllib.loads((PACKAGE.parent / "pyproject.toml").read_text(encoding="utf-8"))
-    plugins = ["rectbench_methods", "rectbench_scenes", "rectbench_reports"]
-    folders = {module for module, path in files_by_module(PACKAGE).items() if path.stem == "__init__"}
-    assert set(project["tool"]["setuptools"]["packages"]) == folders | set(plugins)
+    roots = [PACKAGE, *(PACKAGE.parent / name for name in ("methods", "scenes", "reports"))]
+    modules = {module: path for root in roots for module, path in files_by_module(root).items()}
+    folders = {module for module, path in modules.items() if path.stem == "__init__"}
+    own_names = {name if name.startswith("rectbench") else f"rectbench_{name}" for name in folders}
+    assert set(project["tool"]["setuptools"]["packages"]) == own_names

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from rectbench_methods._local_energy import Energy, Law
-from rectbench_methods.local_homography import LocalHomography
+from rectbench_methods.scan_lines._local_energy import Energy, Law
+from rectbench_methods.scan_lines.local_homography import LocalHomography
 from scipy.optimize import minimize
 
 import rectbench as rb

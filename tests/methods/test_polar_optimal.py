@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from rectbench_methods._log_energy import LogEnergy, Splines, WeightedPixels
-from rectbench_methods.polar_optimal import PolarOptimal, fitted
+from rectbench_methods.scan_lines._log_energy import LogEnergy, Splines, WeightedPixels
+from rectbench_methods.scan_lines.polar_optimal import PolarOptimal, fitted
 from scipy.optimize import approx_fprime
 
 import rectbench as rb

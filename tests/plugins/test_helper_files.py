@@ -165,7 +165,8 @@ def test_pythons_own_modules_and_libraries_are_nobodys_helpers(
 
 
 @pytest.mark.parametrize(
-    "line", ["rb.best_method", "from rectbench import *", "r = rb", "import rectbench_methods.hartley"]
+    "line",
+    ["rb.best_method", "from rectbench import *", "r = rb", "import rectbench_methods.homographies.hartley"],
 )
 def test_what_may_use_any_part_of_rectbench_depends_on_all_of_it(tmp_path: Path, line: str) -> None:
     for name, text in (("mine", line), ("all", "rb.rectify")):
