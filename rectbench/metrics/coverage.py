@@ -18,6 +18,8 @@ from rectbench.warps.rectification import in_frame
 TRIMMED = "trimmed"
 """The column that is there where anything is trimmed."""
 
+BAND_ROWS = 64
+
 
 def trimmed_text(share: float, margin_deg: float) -> str:
     """How much of the view was trimmed, and where, in one line.
@@ -48,7 +50,7 @@ def coverage_of(rect: Rectification, seen: SeenView, tables: Mapping[Side, Table
     """The same, with what the rig's lenses see, and the rectification's lookup tables."""
     sides = ((rect.left, seen.left), (rect.right, seen.right))
     pixels, solid_angle, overlap = np.mean([_kept_shares(*side, rect.size) for side in sides], axis=0)
-    valid = [reads_source(*tables[side], rect.warp(side).source.size).mean() for side in SIDES]
+    valid = [_valid_share(tables[side], rect.warp(side)) for side in SIDES]
     source_pixels = np.mean([math.prod(warp.source.size) for warp in (rect.left, rect.right)])
     trimmed = float(np.mean([_trimmed_share(*side) for side in sides]))
     return {
@@ -69,6 +71,13 @@ def _kept_shares(warp: Warp, seen: SeenPixels, size: tuple[int, int]) -> tuple[f
         float(seen.solid_angle_sr[kept].sum() / seen.solid_angle_sr.sum()),
         float(overlap),
     )
+
+
+def _valid_share(table: Table, warp: Warp) -> float:
+    """By bands of rows: masks of whole images cost more to be given memory than to be made."""
+    bands = [slice(row, row + BAND_ROWS) for row in range(0, len(table[0]), BAND_ROWS)]
+    masks = (reads_source(table[0][band], table[1][band], warp.source.size) for band in bands)
+    return sum(map(np.count_nonzero, masks)) / table[0].size
 
 
 def _trimmed_share(warp: Warp, seen: SeenPixels) -> float:

@@ -12,7 +12,7 @@ from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import OptimizeResult, least_squares
+from scipy.optimize import minimize_scalar
 
 from rectbench.errors import InvalidInput
 from rectbench.plugins.metric import Case, Column, Metric, Tolerance
@@ -29,6 +29,8 @@ WEIGHTS = np.sqrt([1.0, 0.5, 0.5])
 STRETCH_PIXELS = (500, 4_000)
 """Pixels on which the best stretch is looked for and found: L is flat about its minimum, and 4,000 of 20,000
 pixels move it by a few thousandths at the most."""
+ELONGATIONS = tuple(np.linspace(-3.0, 3.0, 13).tolist())
+"""Logarithms of how much longer û may be than v̂ is, and shorter, that are tried."""
 
 
 class Distortion(float):
@@ -132,53 +134,50 @@ def _residuals(J: FloatArray) -> FloatArray:
 
 
 def best_scale(J: FloatArray, weights: FloatArray | None = None) -> tuple[float, float]:
-    """The single scale s with the least L, twice.
-
-    L(s) = mean[(s² S - 1)² + s² r + s⁴ k] is a parabola in s², so its minimum is in closed form.
-    """
+    """The single scale s with the least L, twice."""
     if not len(J):
         return 1.0, 1.0
-    S = losses(*entries(J), np)[0] + 1
-    _, ratio, skew = _terms(J)
-    S_mean, r_mean, fourth = (np.average(x, weights=weights) for x in (S, ratio, np.square(S) + skew))
-    scale = math.sqrt(max(0.0, float((2 * S_mean - r_mean) / (2 * fourth))))
+    gain, cost = _by_scale(J, weights)
+    scale = math.sqrt(max(0.0, gain / cost))
     return scale, scale
 
 
 def best_stretch(J: FloatArray, weights: FloatArray | None = None) -> tuple[float, float]:
-    """The scales (s_u, s_v) with the least L, the same for both images."""
-    scale, _ = best_scale(J, weights)
-    if not (len(J) and scale > 0):
-        return scale, scale
+    """The scales (s_u, s_v) with the least L, the same for both images.
 
-    # Near the collapse a long and narrow image can be better than a small one: two more starts.
-    starts = np.log([[scale, scale], [4 * scale, scale / 4], [scale / 4, 4 * scale]])
-    roots = np.ones(len(J)) if weights is None else np.sqrt(weights)
-    few, most = (slice(None, None, max(1, len(J) // count)) for count in STRETCH_PIXELS)
-    near = min((_descended(J[few], roots[few], start) for start in starts), key=lambda fit: fit.cost).x
-    s_u, s_v = map(float, np.exp(_descended(J[most], roots[most], near).x))
-    return s_u, s_v
-
-
-def _descended(J: FloatArray, roots: FloatArray, start: FloatArray) -> OptimizeResult:
-    """Where L of Jacobians [N, 2, 2] is least, from logarithms of (s_u, s_v) on.
-
-    `roots` [N] are those of their weights.
+    Of an elongation t, s_u = s eᵗ and s_v = s e⁻ᵗ, the scale s is in closed form. L has several minima in t.
     """
+    if not len(J):
+        return 1.0, 1.0
+    few, most = (slice(None, None, max(1, len(J) // count)) for count in STRETCH_PIXELS)
+    near = min(ELONGATIONS, key=lambda t: _least_loss(t, J[few], _part(weights, few)))
+    step = ELONGATIONS[1] - ELONGATIONS[0]
+    sampled = J[most], _part(weights, most)
+    best = minimize_scalar(_least_loss, bounds=(near - step, near + step), args=sampled, method="bounded").x
+    scale, _ = best_scale(_elongated(best, sampled[0]), sampled[1])
+    return scale * math.exp(best), scale * math.exp(-best)
 
-    def stretched(logs: FloatArray) -> FloatArray:
-        return np.nan_to_num(roots * _residuals(J * np.exp(logs)[:, None])).ravel()
 
-    def slopes(logs: FloatArray) -> FloatArray:
-        a, b, c, d = entries(J * np.exp(logs)[:, None])
-        S, w1, w2 = np.abs(a * d - b * c), np.hypot(a, c), np.hypot(b, d)
-        by_logs = [[S, a * a / w1 - b * b / w2, 2 * a * b], [S, c * c / w1 - d * d / w2, 2 * c * d]]
-        found: FloatArray = np.nan_to_num(roots * WEIGHTS[None, :, None] * by_logs).reshape(2, -1).T
-        return found
+def _by_scale(J: FloatArray, weights: FloatArray | None) -> tuple[float, float]:
+    """(g, c) of L(s) = mean[(s² S - 1)² + s² r + s⁴ k] = 1 - 2 g s² + c s⁴, a parabola in s²."""
+    S = losses(*entries(J), np)[0] + 1
+    _, ratio, skew = _terms(J)
+    gain, cost = (float(np.average(x, weights=weights)) for x in (S - ratio / 2, np.square(S) + skew))
+    return gain, cost
 
-    # A step too far has an L beyond all numbers, and is taken back.
-    with np.errstate(over="ignore", invalid="ignore"):
-        return least_squares(stretched, start, slopes, method="lm")
+
+def _least_loss(elongation: float, J: FloatArray, weights: FloatArray | None) -> float:
+    """L at the best scale."""
+    gain, cost = _by_scale(_elongated(elongation, J), weights)
+    return 1 - max(0.0, gain) ** 2 / cost
+
+
+def _elongated(elongation: float, J: FloatArray) -> FloatArray:
+    return J * np.exp([elongation, -elongation])[:, None]
+
+
+def _part(weights: FloatArray | None, part: slice) -> FloatArray | None:
+    return None if weights is None else weights[part]
 
 
 PROTOCOLS: Mapping[Protocol, Callable[[FloatArray, FloatArray], tuple[float, float]]] = {

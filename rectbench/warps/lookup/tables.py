@@ -5,6 +5,7 @@ from __future__ import annotations
 from types import SimpleNamespace
 from typing import Any
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -37,8 +38,12 @@ def lookup_table(warp: Warp, size: tuple[int, int]) -> Table:
 
 def reads_source(map_x: FloatMap, map_y: FloatMap, size: tuple[int, int]) -> BoolArray:
     """Mask of table entries that read nothing but pixels of a source image of `size`."""
-    w, h = size
-    return (map_x >= 0) & (map_x <= w - 1) & (map_y >= 0) & (map_y <= h - 1)
+    in_columns, in_rows = (
+        cv2.inRange(layer, np.zeros(1), np.array([side - 1.0]))
+        for layer, side in zip((map_x, map_y), size, strict=True)
+    )
+    reads: BoolArray = (in_columns & in_rows).astype(bool)
+    return reads
 
 
 def _source_pixel(warp: Warp, c: Any, column: Any, row: Any, xp: Formulas) -> tuple[Any, Any]:
