@@ -14,7 +14,7 @@ from rectbench import llvm
 from rectbench.formulas.namespaces import NUMPY, drjit_namespace, is_number
 from rectbench.types import BoolArray, Constants, FloatArray
 
-KERNEL_THRESHOLD = 2_000
+KERNEL_THRESHOLD = 1_000
 """Points from which a compiled kernel is used. It beats NumPy from some hundreds on, its launch included;
 but each formula of each kind of lens is first compiled, once a machine, which takes as long as many calls."""
 
@@ -24,10 +24,12 @@ def opaque(tree: Any) -> Any:
     import drjit as dr
     from drjit.llvm import Float64
 
+    if isinstance(tree, float):  # most are
+        return dr.opaque(Float64, tree)
+    if isinstance(tree, tuple):
+        return tuple(map(opaque, tree))
     if isinstance(tree, Mapping):
         return SimpleNamespace(**{name: opaque(value) for name, value in tree.items()})
-    if isinstance(tree, tuple):
-        return tuple(opaque(value) for value in tree)
     variable = Float64(tree if isinstance(tree, np.ndarray) else float(tree))
     dr.make_opaque(variable)
     return variable
@@ -35,10 +37,12 @@ def opaque(tree: Any) -> Any:
 
 def namespaced(tree: Any) -> Any:
     """Constants with attribute access, as the formulas read them."""
+    if isinstance(tree, float):  # most are
+        return tree
+    if isinstance(tree, tuple):
+        return tuple(map(namespaced, tree))
     if isinstance(tree, Mapping):
         return SimpleNamespace(**{name: namespaced(value) for name, value in tree.items()})
-    if isinstance(tree, tuple):
-        return tuple(namespaced(value) for value in tree)
     return tree
 
 

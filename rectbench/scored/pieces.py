@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -31,6 +32,7 @@ LARGEST_TABLE = 2_000_000
 LARGE_SHARE = 1 / 8
 """Of the image's side; pieces are a tenth as large."""
 ROUNDING_PX = 0.1
+_CROSS = cv2.getStructuringElement(cv2.MORPH_CROSS, (3, 3))
 
 
 @dataclass(frozen=True, eq=False)
@@ -283,7 +285,7 @@ def _corners(table: Table, columns: NDArray[np.intp], rows: NDArray[np.intp]) ->
     if is_known.all():
         return corners, is_known
     corners[:, ~is_known] = np.nan
-    row, column = np.nonzero(~is_known)
+    row, column = np.nonzero(cv2.dilate(is_known.view(np.uint8), _CROSS).view(bool) & ~is_known)
     guesses = [
         _extended(corners, (row, column), places, along, step)
         for along, places in enumerate((rows, columns))

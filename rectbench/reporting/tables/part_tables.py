@@ -14,6 +14,7 @@ from rectbench.plugins.result import Result
 from rectbench.reporting.asked import methods_part, wanted_figures
 from rectbench.reporting.charts.starts import SAME_MINIMUM, Starts, start_study, study_method
 from rectbench.reporting.names import named, one_line, pair_labels, slug
+from rectbench.reporting.survey import NAME as SURVEY
 from rectbench.reporting.tables.belief_table import belief_table
 from rectbench.reporting.tables.captions import averages_text, capitalised
 from rectbench.reporting.tables.claims_tables import claims_tables
@@ -22,6 +23,7 @@ from rectbench.reporting.tables.numbers import MISSING, three_digits
 from rectbench.reporting.tables.pair_tables import pair_tables
 from rectbench.reporting.tables.rig_tables import distortion_tables, rig_table
 from rectbench.reporting.tables.run_tables import failures_table, photograph_tables
+from rectbench.reporting.tables.survey_table import survey_table
 from rectbench.reporting.tables.table import (
     Entry,
     Heading,
@@ -57,6 +59,8 @@ def all_tables(run: Run) -> Iterator[Table]:
     yield from photograph_tables(run)
     for part in run.parts:
         if methods := methods_part(part):
+            if SURVEY in wanted_figures(part) and (survey := survey_table(run, methods)):
+                yield survey
             yield from _methods_tables(methods)
         if "starts" in wanted_figures(part) and (study := start_study(part, run)):
             yield starts_table(part, study)
