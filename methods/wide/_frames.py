@@ -40,10 +40,3 @@ def in_epipolar_frame(
     R_rect_left, R_rect_right = rb.rectifying_rotations(rig)
     left, right = rb.Warp(rig.left, R_rect_left, target), rb.Warp(rig.right, R_rect_right, target)
     return held(rig, left, right, notes, columns_px)
-
-
-def angles(camera: rb.Camera, R_rect_cam: np.ndarray) -> np.ndarray:
-    """(γ, β) in radians [N, 2] of what bounds a camera's view, in the frame of a rotation."""
-    radians = rb.Radial("equidistant", 1.0, 0.0)
-    pixels, _ = rb.outline_pixels(camera)
-    return rb.Warp(camera, R_rect_cam, rb.Epipolar(radians, radians)).forward(pixels)

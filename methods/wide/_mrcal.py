@@ -6,8 +6,7 @@ import numpy as np
 
 import rectbench as rb
 
-from ._frames import angles
-
+RADIANS = rb.Radial("equidistant", 1.0, 0.0)
 LEAST_FORWARD = 1e-6
 """Sine of the angle between the baseline and where the cameras look; below it there is no forward."""
 
@@ -43,8 +42,9 @@ class MrcalFrame(NamedTuple):
         along, across = np.linalg.norm(by_ray @ np.array([[cos, 0, -sin], [0, cos, 0]]).T, axis=0)
         return float(along), float(across)
 
-    def reach(self, rig: rb.Rig) -> np.ndarray:
+    def reach(self, rig: rb.Rig, angles: rb.Target) -> np.ndarray:
         """How far both views reach from the middle, along the baseline and across it, radians [2]."""
-        seen = np.concatenate([angles(rig.left, self.R_rect_left), angles(rig.right, self.R_rect_right)])
+        warps = rb.Warp(rig.left, self.R_rect_left, angles), rb.Warp(rig.right, self.R_rect_right, angles)
+        seen = np.concatenate([warp.forward(rb.outline_pixels(warp.source)[0]) for warp in warps])
         reach: np.ndarray = np.nanmax(np.abs(seen - [self.azimuth, 0.0]), axis=0)
         return reach

@@ -4,7 +4,7 @@ import numpy as np
 
 import rectbench as rb
 
-from ._mrcal import MrcalFrame
+from ._mrcal import RADIANS, MrcalFrame
 
 
 class Options(rb.Options):
@@ -29,9 +29,10 @@ class MrcalLatlon(rb.Rectifier[Options]):
 
     def fit(self, problem: rb.Problem, options: Options) -> rb.Rectification:
         rig, frame = problem.rig, MrcalFrame.of(problem.rig)
+        reaches = frame.reach(rig, rb.Epipolar(RADIANS, RADIANS))
         fovs = [
             2 * reach if fov_deg is None else np.radians(fov_deg)
-            for fov_deg, reach in zip((options.az_fov_deg, options.el_fov_deg), frame.reach(rig), strict=True)
+            for fov_deg, reach in zip((options.az_fov_deg, options.el_fov_deg), reaches, strict=True)
         ]
         middles, size, profiles = (frame.azimuth, 0.0), [], []
         for fov, resolution, middle in zip(fovs, frame.px_per_rad(rig.left), middles, strict=True):

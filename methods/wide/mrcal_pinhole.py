@@ -4,7 +4,7 @@ import numpy as np
 
 import rectbench as rb
 
-from ._mrcal import MrcalFrame
+from ._mrcal import RADIANS, MrcalFrame
 
 MOST_DEG = 90.0
 """Field of view where none is stated and the lenses see more."""
@@ -35,9 +35,10 @@ class MrcalPinhole(rb.Rectifier[Options]):
 
     def fit(self, problem: rb.Problem, options: Options) -> rb.Rectification:
         rig, frame = problem.rig, MrcalFrame.of(problem.rig)
+        reaches = frame.reach(rig, rb.Planospheric(RADIANS, RADIANS))
         fovs = [
             min(2 * reach, np.radians(MOST_DEG)) if fov_deg is None else np.radians(fov_deg)
-            for fov_deg, reach in zip((options.az_fov_deg, options.el_fov_deg), frame.reach(rig), strict=True)
+            for fov_deg, reach in zip((options.az_fov_deg, options.el_fov_deg), reaches, strict=True)
         ]
         focals, centres, size = [], [], []
         for fov, resolution, middle in zip(

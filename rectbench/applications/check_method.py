@@ -147,7 +147,7 @@ def _jacobian(plugin: Plugin[Rectifier], problem: Problem, rect: Rectification) 
 
 
 def _central_differences(warp: Warp, pixels: FloatArray, step_px: float, turn_px: float | None) -> FloatArray:
-    """d(rectified)/d(source) [N, 2, 2]; NaN where the map has none, and across the seam, where it may bend."""
+    """d(rectified)/d(source) [N, 2, 2]; NaN where there is none, and across the seam, where maps may bend."""
     steps = step_px * np.eye(2)
     moved = [warp.forward(pixels + step) - warp.forward(pixels - step) for step in steps]
     if turn_px is not None:
