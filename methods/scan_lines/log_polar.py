@@ -1,4 +1,4 @@
-"""Log-polar rectification, for any motion (Palander and Brandt 2008); on the sphere, Mercator's map."""
+"""Conformal rectification: of spheres (Geyer and Daniilidis 2003), of planes (Palander and Brandt 2008)."""
 
 from typing import Literal
 
@@ -23,11 +23,15 @@ class Options(rb.Options):
 class LogPolar(rb.Rectifier[Options]):
     """û = f artanh(sin γ), v̂ = f β: conformal on the sphere, as log-polar coordinates are in the plane.
 
-    What moves forward in front of the camera then shifts, and hardly changes its size or its shape.
+    But for its scale this is the one map of a sphere that is conformal and has epipolar rows: the bipolar
+    coordinates about both epipoles by which Geyer and Daniilidis rectify parabolic mirrors, for any central
+    lens. About one epipole it is Palander and Brandt's logarithm of the distance, and the angle; what moves
+    forward in front of the camera shifts, and hardly changes its size or its shape.
     """
 
     name = "log-polar"
     references = (
+        "Geyer and Daniilidis, Conformal rectification of omnidirectional stereo pairs, OMNIVIS 2003",
         "Palander and Brandt, Epipolar geometry and log-polar transform in wide baseline stereo matching, "
         "ICPR 2008",
     )

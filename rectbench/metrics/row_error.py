@@ -13,7 +13,7 @@ from rectbench.cameras.projection import as_points
 from rectbench.errors import InvalidInput
 from rectbench.plugins.metric import Case, Column, Metric, Tolerance
 from rectbench.types import FloatArray, Matches
-from rectbench.warps import Rectification
+from rectbench.warps import Rectification, Warp
 from rectbench.warps.jacobians import finite
 from rectbench.warps.rectification import in_frame
 
@@ -25,7 +25,10 @@ EQUAL_SHARES = (0.5, 0.95)
 
 @dataclass(frozen=True, eq=False)
 class RowError:
-    """|v̂_left - v̂_right| of correspondences; NaN for those that do not land in both images."""
+    """|v̂_left - v̂_right| of correspondences; NaN for those that do not land in both images.
+
+    Of images whose epipolar curves are stated to be no rows, how far apart these are: `curves_apart`.
+    """
 
     rectified_px: FloatArray
     """[N], pixels of the rectified image."""
@@ -70,11 +73,17 @@ def row_error(rect: Rectification, px_left: ArrayLike, px_right: ArrayLike) -> R
         raise InvalidInput(f"px_left has shape {left.shape}, px_right {right.shape}; expected the same")
     mapped = rect.left.forward(left), rect.right.forward(right)
     shown = in_frame(mapped[0], rect.size) & in_frame(mapped[1], rect.size)
-    error = np.where(shown, np.abs(rect.rows_apart(mapped[0][..., 1], mapped[1][..., 1])), np.nan)
-    gradients = [
-        np.hypot(J[..., 1, 0], J[..., 1, 1]) for J in (rect.left.jacobian(left), rect.right.jacobian(right))
-    ]
+    error = np.where(shown, np.abs(rect.curves_apart(*mapped)), np.nan)
+    gradients = [_across(rect.left, left, mapped[0]), _across(rect.right, right, mapped[1])]
     return RowError(error, error / ((gradients[0] + gradients[1]) / 2))
+
+
+def _across(warp: Warp, pixels: FloatArray, px_rect: FloatArray) -> FloatArray:
+    """[N], rectified pixels across the epipolar curve, |∇v̂| where it is a row, a source pixel at the most."""
+    normals = warp.target.curve_normals(px_rect)
+    gradients = np.einsum("...i,...ij->...j", normals, warp.jacobian(pixels))
+    across: FloatArray = np.linalg.norm(gradients, axis=-1) / np.linalg.norm(normals, axis=-1)
+    return across
 
 
 def on_equal_view(

@@ -146,7 +146,9 @@ class Rectifier(ABC, Generic[OptionsT]):
     """A stereo rectification method: one file, one class.
 
     The class's docstring says in its first line what the method is. `needs` says what it works from:
-    "pose" for a calibrated method, "matches" for one that finds the geometry by itself.
+    "pose" for a calibrated method, "matches" for one that finds the geometry by itself. `is_control` says
+    that the rows of its images are no epipolar planes, knowingly: it is scored as any other, row errors and
+    all, and is not ranked.
 
     A method's options are a subclass of `Options`, named in brackets, so that a type checker holds `fit` to
     them, or nested in the class under the name `Options`.
@@ -167,6 +169,7 @@ class Rectifier(ABC, Generic[OptionsT]):
     name: ClassVar[str]
     references: ClassVar[tuple[str, ...]] = ()
     needs: ClassVar[frozenset[str]] = frozenset({"pose"})
+    is_control: ClassVar[bool] = False
     Options: type[OptionsT] = Options  # type: ignore[assignment]  # the variable's default is Any
 
     def __init_subclass__(cls) -> None:

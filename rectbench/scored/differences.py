@@ -29,3 +29,16 @@ def differences(
         with np.errstate(invalid="ignore", divide="ignore"):
             columns.append((last - first) / (arm_px * (known[0].astype(float) + known[1])))
     return middle, np.stack(columns, axis=-1)
+
+
+def off_derivative(warp: Warp, pixels: FloatArray, stated: FloatArray, arm_px: float) -> FloatArray:
+    """How far the columns of stated derivatives [N, 2, 2] are from differences over short arms, [N, 2].
+
+    Over both arms, or over one: where pieces of a map meet it may bend, and has the derivative of a side.
+    """
+    middle, *arms = np.moveaxis(warp.forward(pixels[:, None] + arm_px * CROSS), 1, 0)
+    found = []
+    for column, (before, after) in zip(np.moveaxis(stated, -1, 0), (arms[:2], arms[2:]), strict=True):
+        slopes = (after - before) / 2, middle - before, after - middle
+        found.append(np.fmin.reduce([np.abs(slope / arm_px - column).max(axis=-1) for slope in slopes]))
+    return np.stack(found, axis=-1)

@@ -31,3 +31,8 @@ from rectbench.warps.view.perspective import PerspectiveFrame as PerspectiveFram
 from rectbench.warps.view.sampling import evaluation_pixels as evaluation_pixels
 from rectbench.warps.view.sampling import outline_pixels as outline_pixels
 from rectbench.warps.warp import Warp as Warp
+from rectbench.warps.wide.longitudes import Planospheric as Planospheric
+from rectbench.warps.wide.longitudes import Upright as Upright
+from rectbench.warps.wide.prism import Prism as Prism
+from rectbench.warps.wide.stereographic import EpipolarCircles as EpipolarCircles
+from rectbench.warps.wide.stereographic import Stereographic as Stereographic

@@ -33,6 +33,9 @@ from rectbench.warps.profiles import Cubic, FramedProfile, Profile, Radial
 from rectbench.warps.rectification import Rectification
 from rectbench.warps.targets import Epipolar, Framed, Perspective, Target, Wrapped
 from rectbench.warps.warp import Warp
+from rectbench.warps.wide.longitudes import Planospheric, Upright
+from rectbench.warps.wide.prism import Prism
+from rectbench.warps.wide.stereographic import EpipolarCircles, Stereographic
 from rectbench.writing import write_atomically
 from rectbench.yaml_text import yaml_text
 
@@ -62,6 +65,14 @@ HEADER = """\
 #                    value_low to 1 at value_high
 #        monotone-spline   value_low + the integral, from the first of the knots, of the quadratic spline
 #                    with these knots and control values (slopes); the outer knots are repeated thrice
+#      upright       u of the longitude atan2(x, z) and v of the latitude atan2(y, hypot(x, z)), as above
+#      planospheric  u of the longitude atan2(x, z), and v of beta, where z is above 0
+#      stereographic   (cx, cy) + 2 focal_px (x, y) / (1 + z) of the unit ray (x, y, z)
+#      epipolar-circles   the same, where corresponding pixels lie on one circle through the images of the
+#                    baseline's two directions, not on a row
+#      prism         with k the whole number nearest to (beta - first_rad) / piece_rad, from 0 to pieces - 1,
+#                    and d = beta - first_rad - k piece_rad: u = cx + focal_px tan(gamma) / cos(d),
+#                    v = cy + focal_px (2 k tan(piece_rad / 2) + tan(d))
 #      wrapped       its target, whose rows go all around the baseline: beyond row start + turn, and before
 #                    row start, they begin again
 #
@@ -174,6 +185,17 @@ TARGETS: Kinds = {
     "planar-polar": (
         PlanarPolar,
         {"matrix": MATRIX, "reference": NUMBERS, "v": PROFILE, "along": TEXT, "start_px": NUMBER},
+    ),
+    "upright": (Upright, {"u": PROFILE, "v": PROFILE}),
+    "planospheric": (Planospheric, {"u": PROFILE, "v": PROFILE}),
+    "stereographic": (Stereographic, dict.fromkeys(("focal_px", "cx", "cy"), NUMBER)),
+    "epipolar-circles": (
+        EpipolarCircles,
+        dict.fromkeys(("focal_px", "cx", "cy"), NUMBER) | {"baseline": NUMBERS},
+    ),
+    "prism": (
+        Prism,
+        dict.fromkeys(("focal_px", "cx", "cy", "first_rad", "piece_rad", "pieces"), NUMBER),
     ),
     "wrapped": (Wrapped, {"target": TARGET} | dict.fromkeys(("start", "turn"), NUMBER)),
     "framed": (Framed, {"target": TARGET} | dict.fromkeys(("left", "top", "across", "down"), NUMBER)),

@@ -155,6 +155,18 @@ class Rectification:
         apart = np.asarray(v_left, dtype=float) - np.asarray(v_right, dtype=float)
         return across_seam(apart, self.turn_px)
 
+    def curves_apart(self, px_left: FloatArray, px_right: FloatArray) -> FloatArray:
+        """How far apart the epipolar curves of pixels [..., 2] of the two images are, in rectified pixels.
+
+        Rows, v̂_left - v̂_right, but for targets that state other curves (`Target.curve_normals`). Of points p
+        and q on one circle the sum of both normals halves the angle between them, at right angles to p - q:
+        the part of p - q along it is 0 there, and between near circles their distance to first order.
+        """
+        normals = self.left.target.curve_normals(px_left) + self.right.target.curve_normals(px_right)
+        with np.errstate(invalid="ignore"):
+            apart = ((px_left - px_right) * normals).sum(axis=-1) / np.linalg.norm(normals, axis=-1)
+        return across_seam(apart, self.turn_px)
+
     def scaled(self, factor: float) -> Rectification:
         """The same images `factor` times as large (sizes rounded to whole pixels), see `Framed`."""
         try:

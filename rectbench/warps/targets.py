@@ -52,6 +52,13 @@ class Target(Projection):
         (u,), (v,) = column, row
         return self.unproject_formula(c, u, v, xp)
 
+    def curve_normals(self, px: FloatArray) -> FloatArray:
+        """Covectors [..., 2] across the curves along which a pair is to be searched, at pixels [..., 2].
+
+        These curves are rows, with (0, 1), unless a target says otherwise; see `Rectification.curves_apart`.
+        """
+        return np.broadcast_to([0.0, 1.0], np.shape(px))
+
 
 @dataclass(frozen=True, eq=False)
 class Framed(Target):
@@ -85,6 +92,11 @@ class Framed(Target):
 
     def ray_formula(self, c: Any, column: Any, row: Any, xp: Formulas) -> tuple[Any, Any, Any, Any]:
         return self.target.ray_formula(c.target, column, row, xp)
+
+    def curve_normals(self, px: FloatArray) -> FloatArray:
+        scales = np.array([self.across, self.down])
+        normals: FloatArray = self.target.curve_normals((px + 0.5) / scales + [self.left, self.top]) / scales
+        return normals
 
 
 WORST_CONDITION = 1e13

@@ -18,6 +18,25 @@ def test_it_is_conformal_on_the_sphere(model: str) -> None:
     np.testing.assert_allclose(J @ J.mT, scale[:, None, None] * np.eye(2), rtol=1e-9, atol=1e-6)
 
 
+def test_of_a_parabolic_mirror_it_is_the_bipolar_coordinates_of_its_image() -> None:
+    """Geyer and Daniilidis's own construction: the image is a complex plane, both epipoles are its poles."""
+    pair = rig("stereographic", centre_m=(0.1, 0.02, -0.03))
+    lens = rb.Camera("stereographic", pair.left.size, dict(pair.left.params) | {"fy": pair.left.params["fx"]})
+    pair = rb.Rig(lens, lens, pair.R_right_left, pair.t_right_left)
+    rect = rb.rectify(pair, "log-polar", focal_px=100.0)
+    towards = pair.centre_right_in_left
+    ahead, behind = lens.project([towards, -towards])[0] @ [1, 1j]
+    pixels = rb.evaluation_pixels(lens, 200)
+    place = pixels @ [1, 1j]
+    bipolar = np.log((place - behind) / (place - ahead))
+    u, v = rect.left.forward(pixels).T
+    known = np.isfinite(u)
+    assert known.sum() > 150
+    np.testing.assert_allclose((u - 100 * bipolar.real)[known], (u - 100 * bipolar.real)[known][0], atol=1e-8)
+    turned = np.exp(1j * (v / 100 - bipolar.imag))[known]  # angles, up to whole turns
+    np.testing.assert_allclose(turned, turned[0], atol=1e-9)
+
+
 def test_its_columns_are_the_closed_form() -> None:
     rect = rb.rectify(aligned_rig(480, 320, 120), "log-polar", focal_px=200.0)
     gamma = np.array([0.0, 0.4, -1.0])

@@ -1,0 +1,1 @@
+"""What tools and papers make of wide lenses: fixed maps with nothing to fit, and controls."""

@@ -1,0 +1,1 @@
+"""Targets of wide views whose columns or rows hang on both angles. Imports `warps.targets` and below."""
