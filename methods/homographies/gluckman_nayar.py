@@ -50,8 +50,8 @@ def least_resampling(pencils: Pencils) -> float:
     steps = np.linspace(low, high, STARTS)
     best = 1 + int(np.argmin([area_change(pencils, t) for t in steps[1:-1]]))
     bounds = steps[best - 1], steps[best + 1]
-    tolerance = PRECISION * (high - low)
-    return float(minimize_scalar(partial(area_change, pencils), bounds=bounds, tol=tolerance).x)
+    change = partial(area_change, pencils)
+    return float(minimize_scalar(change, bounds=bounds, options={"xatol": PRECISION * (high - low)}).x)
 
 
 def range_before_images(pencils: Pencils) -> tuple[float, float]:

@@ -36,6 +36,5 @@ def nearest_affine(pencils: Pencils) -> float:
     # a(t)/l(t)² has one least value, where da/dt l = 2 a dl/dt; the quadratic terms of the two sides cancel.
     slopes = [a.deriv() * line - 2 * a * line.deriv() for a, line in pencils.variances]
     low, high = sorted(-slope.coef[0] / slope.coef[1] for slope in slopes)
-    tolerance = PRECISION * (high - low)
-    found = minimize_scalar(pencils.projective_distortion, bounds=(low, high), tol=tolerance)
-    return float(found.x)
+    criterion, precise = pencils.projective_distortion, PRECISION * (high - low)
+    return float(minimize_scalar(criterion, bounds=(low, high), options={"xatol": precise}).x)

@@ -41,7 +41,7 @@ class ThreeStep(rb.HomographyRectifier):
         focals = np.linspace(shortest, longest, STARTS)
         best = int(np.argmin([error(focal) for focal in focals]))
         around = focals[max(best - 1, 0)], focals[min(best + 1, STARTS - 1)]
-        found = minimize_scalar(error, bounds=around, tol=PRECISION)
+        found = minimize_scalar(error, bounds=around, options={"xatol": PRECISION})
         K = intrinsics(np.exp(found.x), view.centre)
         R_left, R_right = three_turns(K.T @ F @ K)
         notes: dict[str, float | str] = {"focal_px": K[0, 0], "sampson_rms_px": float(np.sqrt(found.fun))}

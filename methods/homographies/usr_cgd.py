@@ -5,18 +5,20 @@ from scipy.optimize import least_squares
 
 import rectbench as rb
 
-from ._pencils import mapped, polygon_area
-from ._turned_cameras import focal_range, fundamental_of, intrinsics, rotation, upright, upright_roll
+from ._pencils import mapped, polygon_area, shift
+from ._turned_cameras import focal_range, fundamental_of, intrinsics, rotation, upright_roll
 
 IDEAL = np.array([1.0, 0.0, 0.0, 1.0])
 """Aspect ratio, skewness [deg], rotation [deg] and size ratio of an image that is not distorted,"""
 BOUND = np.array([0.2, 5.0, 30.0, 0.2])
 """and how far from these they may lie."""
-FIRST_WEIGHT, HEAVIER, ROUNDS = 1e-4, 10.0, 8
+FIRST_WEIGHT, HEAVIER, ROUNDS = 1e-2, 10.0, 5
 """Squared pixels that count as much as a measure at its bound, once it is beyond; by what they are multiplied
 while it stays there; and how often."""
 WORSE_PX = 0.1
 """The Sampson error may not grow by more for it."""
+ROUGHLY = 1e-3
+"""Relative decrease of the cost at which a round ends: only the last one's result is kept."""
 MATCHES = 300
 """As many are enough for eight parameters."""
 
@@ -49,12 +51,14 @@ class USRCGD(rb.HomographyRectifier):
             return rb.sampson_residuals(fundamental_of(*turned(p, view)), left, right) / np.sqrt(len(left))
 
         def off(p: np.ndarray) -> np.ndarray:
-            return (np.array([distortions(H, view.size) for H in turned(p, view)]) - IDEAL) / BOUND
+            return (np.array([distortions(H, view.size) for H in turned(p, view)]) - ideal) / BOUND
 
         def cost(p: np.ndarray) -> np.ndarray:
             return np.append(sampson(p), (np.sqrt(weights) * off(p)).ravel())
 
+        # Cameras one above the other need a quarter turn, which is then no distortion.
         roll = upright_roll(rb.fundamental_matrix(*view.matches), view.centre)
+        ideal = IDEAL + np.degrees([0, 0, roll, 0])
         p, weights = np.array([0, roll, 0, 0, roll, 0, 0, 0]), np.zeros((2, 4))
         p = least_squares(cost, p, bounds=bounds).x
         most_px = np.linalg.norm(sampson(p)) + WORSE_PX
@@ -62,11 +66,11 @@ class USRCGD(rb.HomographyRectifier):
             if not (beyond := np.abs(off(p)) > 1).any():
                 break
             weights[beyond] = np.maximum(HEAVIER * weights[beyond], FIRST_WEIGHT)
-            tried = least_squares(cost, p, bounds=bounds).x
+            tried = least_squares(cost, p, bounds=bounds, ftol=ROUGHLY, xtol=ROUGHLY / 100).x
             if np.linalg.norm(sampson(tried)) > most_px:
                 break
             p = tried
-        H_left, H_right = turned(p, view)
+        H_left, H_right = (with_middle_column(H, view.centre) for H in turned(p, view))
         notes: dict[str, float | str] = {"sampson_rms_px": float(np.linalg.norm(sampson(p)))}
         if (np.abs(off(p)) > 1).any():
             notes["warning"] = "a distortion stays beyond its bound, so that rows correspond"
@@ -78,13 +82,16 @@ def turned(p: np.ndarray, view: rb.PinholeView) -> tuple[np.ndarray, np.ndarray]
     width + height."""
     unit = sum(view.size)
     f_left, f_right = unit * np.exp(p[5:7])
-    R_left, R_right = upright(rotation(0.0, p[0], p[1]), rotation(p[2], p[3], p[4]))
+    R_left, R_right = rotation(0.0, p[0], p[1]), rotation(p[2], p[3], p[4])
+    K_left, K_right = intrinsics(f_left, view.centre), intrinsics(f_right, view.centre)
     K_new = intrinsics((f_left + f_right) / 2, view.centre)
-    K_left, K_right = (
-        intrinsics(f_left, view.centre),
-        intrinsics(f_right, np.add(view.centre, [0, unit * p[7]])),
-    )
-    return K_new @ R_left @ np.linalg.inv(K_left), K_new @ R_right @ np.linalg.inv(K_right)
+    down = shift(np.array([0, unit * p[7]]))
+    return K_new @ R_left @ np.linalg.inv(K_left), down @ K_new @ R_right @ np.linalg.inv(K_right)
+
+
+def with_middle_column(H: np.ndarray, middle: np.ndarray) -> np.ndarray:
+    """The same rows, the middle of the image in the middle column."""
+    return shift((middle - mapped(H, middle[None])[0]) * [1, 0]) @ H
 
 
 def distortions(H: np.ndarray, size: tuple[int, int]) -> np.ndarray:
