@@ -4,6 +4,8 @@ import numpy as np
 
 import rectbench as rb
 
+from ._pencils import closest_columns
+
 
 class Hartley(rb.HomographyRectifier):
     """H' sends the right epipole to infinity, rigid to first order at the centre; H follows it closely."""
@@ -24,7 +26,7 @@ class Hartley(rb.HomographyRectifier):
         # F = [e']× M; adding e' vᵀ only changes what the affine row below chooses anyway.
         M = cross(epipole) @ F + np.outer(epipole, [1.0, 1.0, 1.0])
         H_0 = H_right @ M
-        H_left = closest_columns(H_0, H_right, left, right) @ H_0
+        H_left = closest_columns(H_0, left, H_right, right) @ H_0
         return H_left, H_right, {}
 
 
@@ -37,22 +39,6 @@ def epipole_to_infinity(epipole: np.ndarray, centre: np.ndarray) -> np.ndarray:
     along, _, w = R @ [x, y, w]
     G = np.array([[1, 0, 0], [0, 1, 0], [-w / along, 0, 1]])
     return np.linalg.inv(T) @ G @ R @ T
-
-
-def closest_columns(H_0: np.ndarray, H_right: np.ndarray, left: np.ndarray, right: np.ndarray) -> np.ndarray:
-    """The matrix of first row (a, b, c) that minimises the sum of (a x + b y + c - x')²."""
-    x, y = mapped(H_0, left).T
-    x_right = mapped(H_right, right)[:, 0]
-    if not np.isfinite([x, y, x_right]).all():
-        raise rb.Unsupported("a match is mapped to infinity: the epipole lies in the undistorted view")
-    row, *_ = np.linalg.lstsq(np.column_stack([x, y, np.ones_like(x)]), x_right)
-    return np.array([row, [0, 1, 0], [0, 0, 1]])
-
-
-def mapped(H: np.ndarray, pixels: np.ndarray) -> np.ndarray:
-    """Pixels [N, 2] through a homography."""
-    homogeneous = np.column_stack([pixels, np.ones(len(pixels))]) @ H.T
-    return homogeneous[:, :2] / homogeneous[:, 2:]
 
 
 def cross(v: np.ndarray) -> np.ndarray:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
@@ -26,7 +27,7 @@ LEAST_MATCHES = 8
 
 @dataclass(frozen=True, eq=False)
 class PinholeView:
-    """The pair as undistorted images of one ideal pinhole camera, and the matches seen in both.
+    """The pair as undistorted images of one ideal pinhole camera, with what is known of it there.
 
     Each image looks along its camera's axis. Both have the rig's mean resolution at the centre, the
     principal point in the middle and the larger camera's size, so that a method that assumes one
@@ -39,27 +40,39 @@ class PinholeView:
     ((848, 800), 112)
     """
 
-    matches: Matches
-    """[N, 2] each, pixels of the undistorted images."""
+    problem: Problem
     camera: Camera
     """The pinhole of both undistorted images; rectified images have its size."""
 
     @classmethod
     def of(cls, problem: Problem) -> PinholeView:
-        """The view of a problem; raises Unsupported where fewer than 8 matches can be seen in it."""
-        view = _ideal_pinhole(problem.rig)
+        """The view of a problem."""
+        return cls(problem, _ideal_pinhole(problem.rig))
+
+    @cached_property
+    def rig(self) -> Rig:
+        """The believed rig with this pinhole for both lenses, for methods that work from the pose."""
+        return replace(self.problem.rig, left=self.camera, right=self.camera)
+
+    @cached_property
+    def matches(self) -> Matches:
+        """[N, 2] each, pixels of the undistorted images.
+
+        Raises Unsupported where fewer than 8 matches can be seen in both.
+        """
         pixels, seen = [], []
-        for source, px in zip((problem.rig.left, problem.rig.right), problem.matches, strict=True):
-            projected, ok = view.project(source.unproject(px)[0])
+        lenses = (self.problem.rig.left, self.problem.rig.right)
+        for source, px in zip(lenses, self.problem.matches, strict=True):
+            projected, ok = self.camera.project(source.unproject(px)[0])
             pixels.append(projected)
-            seen.append(ok & view.contains(projected))
+            seen.append(ok & self.camera.contains(projected))
         both = seen[0] & seen[1]
         if both.sum() < LEAST_MATCHES:
             raise Unsupported(
                 f"{both.sum()} of {len(both)} matches can be seen in the undistorted views; "
                 f"expected {LEAST_MATCHES} or more"
             )
-        return cls(Matches(pixels[0][both], pixels[1][both]), view)
+        return Matches(pixels[0][both], pixels[1][both])
 
     @property
     def size(self) -> tuple[int, int]:
@@ -90,7 +103,9 @@ def _ideal_pinhole(rig: Rig) -> Camera:
 
 
 class HomographyRectifier(Rectifier[OptionsT]):
-    """Base of the methods that find a pair of homographies from matches between pinhole images.
+    """Base of the methods that find a pair of homographies between pinhole images.
+
+    They work from the matches, or from the pose of `view.rig` where their `needs` say so.
 
     >>> import numpy as np
     >>> import rectbench as rb
@@ -108,30 +123,40 @@ class HomographyRectifier(Rectifier[OptionsT]):
     ) -> tuple[FloatArray, FloatArray, Mapping[str, float | str]]:
         """H_left, H_right [3, 3] from undistorted to rectified pixels, and the method's notes."""
 
+    def placement(self, view: PinholeView, H_left: FloatArray, H_right: FloatArray) -> FloatArray:
+        """What moves both rectified images into the frame [3, 3], after their homographies.
+
+        Here the shift that brings the mean of the views' middles to the middle of the frame; a method whose
+        authors place the images themselves gives the identity.
+        """
+        return _centring(view.centre, H_left, H_right)
+
     def fit(self, problem: Problem, options: OptionsT) -> Rectification:
         """The homographies of the undistorted views, composed with the lenses."""
         view = PinholeView.of(problem)
-        _require_no_epipole(problem.rig, view.camera)
+        _require_no_epipole(view.rig)
         H_left, H_right, notes = self.homographies(view, options)
-        centring = _centring(view.centre, H_left, H_right)
+        placement = self.placement(view, H_left, H_right)
         warps = [
-            _turned(camera, centring @ H @ view.K)
+            _turned(camera, placement @ H @ view.K)
             for camera, H in ((problem.rig.left, H_left), (problem.rig.right, H_right))
         ]
         _require_both_shown(problem, warps, view.size)
-        stated = {"view_fov_deg": view.fov_deg, "view_matches": float(len(view.matches.left))}
+        stated = {"view_fov_deg": view.fov_deg}
+        if "matches" in self.needs:
+            stated["view_matches"] = float(len(view.matches.left))
         return Rectification(problem.rig, warps[0], warps[1], view.size, {**notes, **stated})
 
 
-def _require_no_epipole(rig: Rig, view: Camera) -> None:
+def _require_no_epipole(rig: Rig) -> None:
     """Raise Unsupported where the undistorted views show an epipole: no homography sends it to infinity
     without sending there what is about it."""
     try:
-        refuse_epipole_in_view(replace(rig, left=view, right=view))
+        refuse_epipole_in_view(rig)
     except Unsupported:
         raise Unsupported(
             "an epipole lies in the undistorted view, which no homography can rectify; expected a method "
-            "that works from the pose"
+            "of scan lines on the sphere"
         ) from None
 
 
@@ -142,7 +167,7 @@ def _require_both_shown(problem: Problem, warps: Sequence[Warp], size: tuple[int
         if not shown.any() or not (np.linalg.det(warp.jacobian(pixels[shown])) > 0).all():
             raise Unsupported(
                 "no pair of homographies shows both undistorted views, so far do the cameras look apart; "
-                "expected a method that works from the pose"
+                "expected a method of scan lines on the sphere"
             )
 
 
