@@ -20,6 +20,7 @@ LISTABLE = {
     "motions": "rectbench.applications.listing:_motions",
     "poses": "rectbench.applications.listing:_poses",
     "metrics": "rectbench.plugins.metric:METRICS",
+    "matchers": "rectbench.matching.dense.matcher:MATCHERS",
     "reports": "rectbench.experiments.spec:REPORTS",
     "figures": "rectbench.plugins.figure:FIGURES",
     "formats": "rectbench.rigs.file_formats:FORMATS",

@@ -53,8 +53,7 @@ def reconstruct(request: ReconstructRequest) -> int:
     """Reconstruct an image pair in 3-D: a coloured point cloud, depth, disparity and a picture."""
     from rectbench.applications.one_rig import calibrated_pair, rectify_rig
     from rectbench.cli.printing.photographs import show_circle
-    from rectbench.matching import reconstruct
-    from rectbench.matching.dense.matchers import matcher_named
+    from rectbench.matching import matcher_named, reconstruct
     from rectbench.reporting.pictures.reconstructed import write_reconstruction
 
     matcher_named(request.matcher)  # a wrong name is told before the work begins

@@ -16,6 +16,7 @@ from rectbench.experiments.selecting import OwnNames, Selection, own_names, sele
 from rectbench.experiments.spec import REPORTS, Report
 from rectbench.experiments.tasks import CellTask
 from rectbench.margin import checked_margin
+from rectbench.matching import matcher_named
 from rectbench.metrics.scoring import metrics_of, needs_of
 from rectbench.pairs.finding.photographs import Photographs
 from rectbench.pairs.spec import ESTIMATED, PairSpec
@@ -63,6 +64,7 @@ def make_plan(report: Report, selection: Selection | None = None, data: str | Pa
     chosen = selection or Selection()
     if chosen.margin_deg is not None:
         report = report.model_copy(update={"margin_deg": checked_margin(chosen.margin_deg)})
+    matcher_named(report.matcher)  # a wrong name is told before anything runs
     sources = [source.located(report.name, data) for source in report.sources]
     if chosen.scenes is not None and not any("scenes" in source.selects for source in sources):
         lenses = f"report {report.name} is of lenses without a scene"
@@ -118,6 +120,7 @@ def _tasks_of(source: PairSource, report: Report, own: OwnNames, chosen: Selecti
                     options=options,
                     metrics=metrics,
                     match_count=report.match_count,
+                    matcher=report.matcher,
                     group=part.name,
                     alone=part.alone,
                 )

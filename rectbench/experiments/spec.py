@@ -33,8 +33,8 @@ def _found_from_anywhere(name: str) -> str:
     return str(Path(name).resolve()) if is_path(name) else name
 
 
-FigureName = Annotated[str, AfterValidator(_found_from_anywhere)]
-"""A figure's name, or the absolute path of its file."""
+PluginName = Annotated[str, AfterValidator(_found_from_anywhere)]
+"""A plugin's name, or the absolute path of its file."""
 
 
 def _one_set_is_a_list_of_one(options: Any) -> Any:
@@ -93,7 +93,7 @@ class Group(StatedPairs):
     """As a report's."""
     metrics: tuple[str, ...] | None = None
     """In the place of the report's."""
-    figures: tuple[FigureName, ...] | None = None
+    figures: tuple[PluginName, ...] | None = None
     """In the place of the report's."""
     poses: Names | None = None
     """In the place of the report's."""
@@ -205,7 +205,9 @@ class Report(StatedPairs, Rendering, GivenMatches, CellLimits):
     metrics: tuple[str, ...] = ("geometry", "row_error", "timing")
     """What is measured: metrics, by name or path. `geometry` is all that needs neither image nor match.
     Nothing is rendered or computed that none of these asks for."""
-    figures: tuple[FigureName, ...] | None = None
+    matcher: PluginName = "sgbm"
+    """What matches rectified pairs densely, by name or path, where a metric or a figure asks for that."""
+    figures: tuple[PluginName, ...] | None = None
     """Figures to draw; None draws the usual ones."""
     claims: tuple[Claim, ...] = ()
     """What is claimed somewhere, to be judged."""

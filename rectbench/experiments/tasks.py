@@ -6,6 +6,7 @@ from typing import Any
 
 from pydantic import BaseModel, ConfigDict
 
+from rectbench.matching import USUAL_MATCHER
 from rectbench.pairs.spec import PairSpec
 from rectbench.plugins.cell import Cell
 
@@ -23,6 +24,8 @@ class CellTask(BaseModel):
     metrics: tuple[str, ...]
     match_count: int
     """How many true matches the method is given, where it is given such."""
+    matcher: str = USUAL_MATCHER
+    """The dense matcher's name, or the absolute path of its file."""
     group: str = ""
     """The part of the report it belongs to."""
     alone: bool = False

@@ -4,7 +4,11 @@ from rectbench.matching.boards.corners import BoardMatches as BoardMatches
 from rectbench.matching.boards.corners import board_matches as board_matches
 from rectbench.matching.dense.disparity import Disparity as Disparity
 from rectbench.matching.dense.disparity import dense_disparity as dense_disparity
-from rectbench.matching.dense.matchers import MATCHERS as MATCHERS
+from rectbench.matching.dense.matcher import MATCHERS as MATCHERS
+from rectbench.matching.dense.matcher import USUAL_MATCHER as USUAL_MATCHER
+from rectbench.matching.dense.matcher import Matcher as Matcher
+from rectbench.matching.dense.matcher import matcher as matcher
+from rectbench.matching.dense.matcher import matcher_named as matcher_named
 from rectbench.matching.dense.reconstruction import Reconstruction as Reconstruction
 from rectbench.matching.dense.reconstruction import reconstruct as reconstruct
 from rectbench.matching.features.matches import match_features as match_features

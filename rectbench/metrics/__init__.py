@@ -11,6 +11,10 @@ from rectbench.metrics.distortion import Distortion as Distortion
 from rectbench.metrics.distortion import distortion as distortion
 from rectbench.metrics.distortion import distortion_of as distortion_of
 from rectbench.metrics.energy import energy_convex_share as energy_convex_share
+from rectbench.metrics.homography.gluckman_nayar import GluckmanNayar as GluckmanNayar
+from rectbench.metrics.homography.loop_zhang import LoopZhang as LoopZhang
+from rectbench.metrics.homography.mallon_whelan import MallonWhelan as MallonWhelan
+from rectbench.metrics.homography.usr_cgd import UsrCgd as UsrCgd
 from rectbench.metrics.log_distortion import log_distortion as log_distortion
 from rectbench.metrics.log_distortion import log_distortion_on_view as log_distortion_on_view
 from rectbench.metrics.order import order as order

@@ -24,8 +24,10 @@ BUNDLES: Mapping[str, tuple[str, ...]] = {
         "order",
         "row_misfit",
     ),
+    "homography": ("loop_zhang", "mallon_whelan", "usr_cgd", "gluckman_nayar"),
 }
-"""Names that stand for several metrics. `geometry`: all that needs neither image nor match."""
+"""Names that stand for several metrics. `geometry`: all that needs neither image nor match, and is this
+harness's own; `homography`: what papers on rectifying homographies measure."""
 POSE = "pose"
 """The metric that nobody has to ask for: it is computed wherever a pose is estimated."""
 

@@ -26,20 +26,16 @@ def across_key(share: float) -> str:
     return f"view_{100 * share:.0f}_deg"
 
 
-def is_perspective(warp: Warp, pixels: FloatArray) -> bool:
-    """Whether a homography takes the rays of source pixels [N, 2] to where the warp takes them.
+def perspective_matrix(warp: Warp, pixels: FloatArray) -> FloatArray | None:
+    """The homography [3, 3], rectified pixels from rays, that a warp is over source pixels [N, 2].
 
-    >>> import rectbench as rb
-    >>> rig = rb.load_rig("t265")
-    >>> pixels = rb.ScoredView.of(rig).left.pixels
-    >>> [is_perspective(rb.rectify(rig, m).left, pixels) for m in ("conventional", "abraham")]
-    [True, False]
+    Up to a factor. None where the image is not a perspective one, or too little of it is known.
     """
-    some = pixels[::SAMPLED]
+    some = pixels[:: max(1, min(SAMPLED, len(pixels) // LEAST_PIXELS))]
     px_rect, (rays, _) = warp.forward(some), warp.source.unproject(some)
     known = np.all(np.isfinite(px_rect), axis=-1)
     if known.sum() < LEAST_PIXELS:
-        return False
+        return None
     rays, px_rect = rays[known], px_rect[known]
     middle, spread = px_rect.mean(axis=0), px_rect.std()
     places = (px_rect - middle) / spread
@@ -51,7 +47,22 @@ def is_perspective(warp: Warp, pixels: FloatArray) -> bool:
     homogeneous = rays @ H.T
     with np.errstate(divide="ignore", invalid="ignore"):
         off = (homogeneous[:, :2] / homogeneous[:, 2:] - places) * spread
-    return bool(np.abs(off).max() < PERSPECTIVE_PX)
+    if not np.abs(off).max() < PERSPECTIVE_PX:
+        return None
+    P: FloatArray = np.array([[spread, 0, middle[0]], [0, spread, middle[1]], [0, 0, 1]]) @ H
+    return P
+
+
+def is_perspective(warp: Warp, pixels: FloatArray) -> bool:
+    """Whether a homography takes the rays of source pixels [N, 2] to where the warp takes them.
+
+    >>> import rectbench as rb
+    >>> rig = rb.load_rig("t265")
+    >>> pixels = rb.ScoredView.of(rig).left.pixels
+    >>> [is_perspective(rb.rectify(rig, m).left, pixels) for m in ("conventional", "abraham")]
+    [True, False]
+    """
+    return perspective_matrix(warp, pixels) is not None
 
 
 class View(Metric):

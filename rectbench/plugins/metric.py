@@ -12,7 +12,7 @@ from pydantic import ConfigDict, TypeAdapter, ValidationError
 
 from rectbench.errors import InvalidInput
 from rectbench.images.stereo_pair import StereoPair
-from rectbench.matching import BoardMatches, PoseEstimate
+from rectbench.matching import USUAL_MATCHER, BoardMatches, PoseEstimate
 from rectbench.plugins.cell import IDENTITY
 from rectbench.registry.kind import Described, Kind, described_object
 from rectbench.rendering.truth import Truth
@@ -223,6 +223,8 @@ class Case:
     """Fits the method once more; for times."""
     first_fit_s: float = math.nan
     """Seconds of the fit that gave `rect`."""
+    matcher: str = USUAL_MATCHER
+    """What dense matching is done by: a matcher's name, or the path of its file."""
     remarks: dict[str, str] = field(default_factory=dict)
     """What is to be said beside the numbers, by a name; metrics add theirs."""
     _made: dict[Callable[[Case], Any], Any] = field(default_factory=dict, init=False, repr=False)

@@ -74,8 +74,8 @@ class _Recalled:
         return self._fitted[result.cell]
 
     def reconstruction(self, result: Result) -> Reconstruction:
-        images = self.pair(result).images
-        return reconstruct(self.rectification(result), images.left, images.right)
+        images, matcher = self.pair(result).images, self._task(result).matcher
+        return reconstruct(self.rectification(result), images.left, images.right, matcher)
 
     def version(self, result: Result) -> str:
         try:

@@ -156,7 +156,7 @@ class ReconstructRequest(SeededMethodRequest, RigRequest):
     left: Path = positional("LEFT", "The left image.")
     right: Path = positional("RIGHT", "The right image.")
     out: Path = word("Folder for what is made.", *OUT, default=Path("reconstructed"))
-    matcher: str = word("The dense matcher: sgbm, sgbm-5way, sgbm-8way or bm.", default="sgbm")
+    matcher: str = word("The dense matcher, by name or path, see `rectbench list matchers`.", default="sgbm")
     nearest_baselines: float = word("Nothing nearer is sought, in multiples of the baseline.", default=4.0)
     pixels: float = word("A rectified image of more pixels is made smaller first.", default=1e6)
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from rectbench.experiments.execution.outcomes import LASTING, Outcome, outcome_of
 from rectbench.experiments.tasks import CellTask
 from rectbench.margin import MARGIN_DEG
+from rectbench.matching import MATCHERS, USUAL_MATCHER
 from rectbench.metrics.scoring import digests_of, needs_of, score
 from rectbench.metrics.timing import timed
 from rectbench.metrics.view import PROJECTION
@@ -72,7 +73,14 @@ def cell_inputs(task: CellTask, pair: Pair) -> Inputs:
         "code": code_digest(__name__),
         "versions": dict(versions(*MEASURING_PACKAGES)),
         **({} if pair.margin_deg == MARGIN_DEG else {"margin_deg": pair.margin_deg}),
+        **({} if task.matcher == USUAL_MATCHER else {"matcher": _identity_of_matcher(task.matcher)}),
     }
+
+
+def _identity_of_matcher(asked: str) -> list[str]:
+    """Its name, as a file may hold several, and the digest of its source."""
+    plugin = registry(MATCHERS).get(asked)
+    return [plugin.name, plugin.digest]
 
 
 def uses_images(task: CellTask, pair: Pair) -> bool:
@@ -151,6 +159,7 @@ def _measured(task: CellTask, pair: Pair) -> Outcome:
         pose_is_estimated=task.cell.pose == ESTIMATED,
         fit=fit,
         first_fit_s=first_fit_s,
+        matcher=task.matcher,
     )
     check_agreement(rectification, case.delivered)
     columns = score(case, task.metrics)

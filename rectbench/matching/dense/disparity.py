@@ -8,16 +8,18 @@ from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 import cv2
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+import rectbench.matching.dense.matchers  # noqa: F401  (shapes what is found, and belongs to the key of it)
 from rectbench.cameras.projection import as_points
 from rectbench.errors import InvalidInput, InvalidResult, Unavailable, argument
 from rectbench.images.reading import grey8
-from rectbench.matching.dense.matchers import MATCHERS, Image, Matcher, matcher_named
+from rectbench.matching.dense.matcher import USUAL_MATCHER, Image, Match, Matcher, matcher_named
 from rectbench.types import BoolArray, FloatArray
 from rectbench.warps import Rectification
 
@@ -96,7 +98,7 @@ def dense_disparity(
     left: NDArray[np.generic],
     right: NDArray[np.generic],
     *,
-    matcher: str | Matcher = "sgbm",
+    matcher: str | Path | Match = USUAL_MATCHER,
     pixels: float = PIXELS,
     nearest_baselines: float = NEAREST_BASELINES,
 ) -> Disparity:
@@ -107,7 +109,7 @@ def dense_disparity(
     rect : a rectification of the pair's rig, by any method.
     left, right : the photographs, [H, W] or [H, W, 1 to 4 channels] (RGB, alpha last), of their
         cameras' sizes, 8 or 16 bits or float.
-    matcher : a name of `MATCHERS`, or a callable, see `Matcher`.
+    matcher : the name of one or the path of its file, see `matcher`, or a function, see `Match`.
     pixels : a rectified image of more pixels is made smaller; smaller still where the search would
         be too wide (`Disparity.rect` tells the size).
     nearest_baselines : nearest distance from the left camera at which things are sought, in
@@ -232,7 +234,7 @@ def _both_ways(
         return disparities
 
     jobs = ((left, right), (mirrored(right), mirrored(left)))
-    if match not in MATCHERS.values():  # nobody promised that it may run in two threads
+    if not match.is_reentrant:
         forth, back = (answer(*job) for job in jobs)
     else:
         with ThreadPoolExecutor(2) as threads:

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rectbench.errors import InvalidInput
 from rectbench.matching.dense.disparity import NEAREST_BASELINES, PIXELS, Disparity, dense_disparity
-from rectbench.matching.dense.matchers import Image, Matcher
+from rectbench.matching.dense.matcher import USUAL_MATCHER, Image, Match
 from rectbench.types import FloatArray
 from rectbench.warps import Rectification
 
@@ -109,7 +109,7 @@ def reconstruct(
     rect: Rectification,
     left: NDArray[np.generic],
     right: NDArray[np.generic],
-    matcher: str | Matcher = "sgbm",
+    matcher: str | Path | Match = USUAL_MATCHER,
     *,
     pixels: float = PIXELS,
     nearest_baselines: float = NEAREST_BASELINES,
@@ -122,9 +122,10 @@ def reconstruct(
     rect : a rectification of the pair's rig, by any method, see `rectify`.
     left, right : the photographs, [H, W] or [H, W, 1 to 4 channels] (RGB, alpha last), of their
         cameras' sizes, 8 or 16 bits or float.
-    matcher : `sgbm` (the default), `sgbm-5way`, `sgbm-8way`, `bm`, or a callable of your own:
-        `(left, right, lowest, highest) -> disparities [H, W]`, given rectified uint8 RGB images and
-        the range to search, NaN where it finds nothing; it is called twice, for a left-right check.
+    matcher : `sgbm` (the default), `sgbm-5way`, `sgbm-8way`, `bm`, the path of a file with a matcher, or a
+        function of your own: `(left, right, lowest, highest) -> disparities [H, W]`, given rectified
+        uint8 RGB images and the range to search, NaN where it finds nothing; it is called twice, for a
+        left-right check.
     pixels : a rectified image of more pixels is made smaller first.
     nearest_baselines, farthest_baselines : the distances from the left camera, in baselines, from
         which things are sought and to which points are kept.

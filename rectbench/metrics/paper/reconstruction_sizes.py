@@ -55,14 +55,14 @@ class ReconstructionSizes(Metric):
     )
 
     def compute(self, case: Case) -> dict[str, float]:
-        """By semi-global matching at each size."""
+        """By the report's matcher at each size."""
         kept = [view for view in VIEWS if case.delivered.keeps(view)]
         images, truth = case.pair.images, case.pair.truth
         pixels = counted_pixels(truth)
         within = {view: case.pair.scored_view.left.within(pixels, view) for view in kept}
         scores = {}
         for megapixels, rect, frame_pixels in sized(case.rect) if kept else ():
-            found = reconstruct(rect, images.left, images.right, pixels=frame_pixels)
+            found = reconstruct(rect, images.left, images.right, case.matcher, pixels=frame_pixels)
             error = depth_errors(found, truth, pixels)
             for view, counted in within.items():
                 if counted.any():

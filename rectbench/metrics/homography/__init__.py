@@ -1,0 +1,1 @@
+"""What papers on rectifying homographies measure, if a report asks for it. Imports metrics and below."""
