@@ -2,21 +2,27 @@
 
 from __future__ import annotations
 
+import math
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
 from rectbench.plugins.metric import Column
 from rectbench.plugins.result import Part, Result
-from rectbench.reporting.curves import view_key
-from rectbench.reporting.tables.standings import lacking, standing
-from rectbench.reporting.tables.summaries import averaged, summarise
+from rectbench.reporting.curves import ranked_share, shares, view_key
+from rectbench.reporting.tables.standings import lacking
+from rectbench.reporting.tables.summaries import averaged
 
 NAME = "survey"
 """The figure that a part asks for, and its table with it."""
 BOUNDS_DEG = (60.0, 110.0, 165.0)
 """Horizontal fields of view between which one class ends and the next begins: up to the first perspective
 images serve without loss, from the last on hardly any of the view fits into one."""
+FLOOR = 1e-6
+"""Less distortion is rounding."""
+MIDDLE = 50
+"""The lesser share (%) of the view that is looked at."""
 
 
 @dataclass(frozen=True)
@@ -46,6 +52,16 @@ class LensClass:
         return low < view_deg <= high
 
 
+def surveyed_columns(part: Part) -> dict[int, Column]:
+    """By share (%) of the view, what a survey shows: the ranking column, and the same of the middle half.
+
+    What crops the rim of a view is not ranked, and yet a survey tells how it does in the middle.
+    """
+    columns, ranked = shares(part.catalogue), ranked_share(part.catalogue)
+    wanted = [share for share in (ranked, MIDDLE) if share in columns]
+    return {share: part.catalogue.column(columns[share]) for share in wanted}
+
+
 @dataclass(frozen=True)
 class Reached:
     """What a method comes to on a class of lenses: its number on each rig, their average, or why it has none.
@@ -60,12 +76,27 @@ class Reached:
 
 @dataclass(frozen=True)
 class Surveyed:
-    """A method on all classes, in their order; None where it was not run."""
+    """A method on all classes, in their order; None where it was not run.
+
+    `label` is its name without what it says of its matches, where that stands for one row alone;
+    `works_from` is what it is given to rectify by: the pose, or matches.
+    """
 
     method: str
+    label: str
     works_from: str
-    """What it is given to rectify by: the pose, or matches."""
     reached: tuple[Reached | None, ...]
+
+    @property
+    def averages(self) -> tuple[float, ...]:
+        """Those that it has."""
+        return tuple(r.average for r in self.reached if r is not None and r.average is not None)
+
+    @property
+    def place(self) -> tuple[int, float, str]:
+        """What methods are sorted by: the more classes are served the better, then the less distorted."""
+        logs = [math.log(max(average, FLOOR)) for average in self.averages]
+        return -len(logs), math.fsum(logs) / max(1, len(logs)), self.method
 
 
 def lens_classes(part: Part) -> tuple[LensClass, ...]:
@@ -80,20 +111,15 @@ def lens_classes(part: Part) -> tuple[LensClass, ...]:
 
 
 def surveyed(part: Part, column: Column, pose: str) -> tuple[Surveyed, ...]:
-    """Each method's numbers of a column under a pose, those first that rank first."""
-    results = part.select(pose=pose)
-    mine = {m: part.select(results, method=m) for m in part.methods}
-    ranking = part.catalogue.ranking
-    found = standing(
-        [summarise(m, own, [ranking]) for m, own in mine.items() if own], results, part.catalogue
-    )
+    """Each method's numbers of a column under a pose, in the order of their places."""
     classes = lens_classes(part)
-    return tuple(
-        Surveyed(
-            s.method, works_from(mine[s.method]), tuple(_reached(mine[s.method], c, column) for c in classes)
-        )
-        for s in found.summaries
-    )
+    bare = Counter(method.partition(" (")[0] for method in part.methods)
+    found = []
+    for method in part.methods:
+        own, name = part.select(pose=pose, method=method), method.partition(" (")[0]
+        reached = tuple(_reached(own, lenses, column) for lenses in classes)
+        found.append(Surveyed(method, name if bare[name] == 1 else method, _works_from(own), reached))
+    return tuple(sorted(found, key=lambda one: one.place))
 
 
 def _reached(results: Sequence[Result], lenses: LensClass, column: Column) -> Reached | None:
@@ -104,6 +130,5 @@ def _reached(results: Sequence[Result], lenses: LensClass, column: Column) -> Re
     return Reached(tuple(found.by_rig.items()), None if why else found.value, why)
 
 
-def works_from(results: Sequence[Result]) -> str:
-    """What a method is given to rectify by."""
+def _works_from(results: Sequence[Result]) -> str:
     return "matches" if any(r.cell.matches for r in results) else "pose"

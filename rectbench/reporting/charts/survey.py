@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rectbench.plugins.figure import Drawing, Figure, FigureData
-from rectbench.reporting.curves import ranked_by
+from rectbench.reporting.shares import measure
 from rectbench.reporting.style import FAINT, INK, LOST, PAGE_INCHES, plain_log_ticks
-from rectbench.reporting.survey import NAME, Reached, Surveyed, lens_classes, surveyed
+from rectbench.reporting.survey import NAME, Reached, Surveyed, lens_classes, surveyed, surveyed_columns
 
 if TYPE_CHECKING:
     import matplotlib.figure
@@ -41,24 +41,28 @@ class Survey(Figure):
     topic = "Ranking"
 
     def drawings(self, given: FigureData) -> Iterator[Drawing]:
-        """One chart, where fields of view are known."""
+        """One chart a share of the view, where fields of view are known."""
         part = given.part
-        classes = lens_classes(part)
-        if not classes:
-            return
-        label = ranked_by(part.catalogue)
-        methods = surveyed(part, part.catalogue.ranking, part.geometric_pose)
-        data = SurveyData(label, tuple((c.title, len(c.rigs)) for c in classes), methods)
-        yield Drawing(
-            NAME,
-            "All methods, all lenses",
-            f"{label[0].upper()}{label[1:]}, a dot a rig, the bar their geometric mean; a panel for each "
-            "class of lenses, by the horizontal field of view that both images show. Blue methods work from "
-            "the pose, orange ones from matches. A method without a number on some pairs of a class says "
-            f"why, and has no mean. The dotted line is the least mean of the class, by {_leaders(data)}.",
-            data,
-            lambda: draw_survey(data),
-        )
+        classes = tuple((c.title, len(c.rigs)) for c in lens_classes(part))
+        if classes:
+            for share, column in surveyed_columns(part).items():
+                label = f"{measure(column)} at {share} % of the view"
+                yield _drawing(SurveyData(label, classes, surveyed(part, column, part.geometric_pose)), share)
+
+
+def _drawing(data: SurveyData, share: int) -> Drawing:
+    return Drawing(
+        NAME,
+        f"All methods, all lenses: {share} % of the view",
+        f"{data.label.capitalize()}, a dot a rig, the bar their geometric mean; a panel for each class of "
+        "lenses, by the horizontal field of view that both images show. Blue methods work from the pose, "
+        "orange ones from matches. A method without a number on some pairs of a class says why, and has no "
+        f"mean. The dotted line is the least mean of the class, by {_leaders(data)}. What serves more "
+        "classes stands higher, then what distorts less.",
+        data,
+        lambda: draw_survey(data),
+        of=str(share),
+    )
 
 
 def _leaders(data: SurveyData) -> str:
@@ -69,7 +73,7 @@ def _leaders(data: SurveyData) -> str:
 
 def _least(data: SurveyData, place: int) -> tuple[float, str]:
     means = [
-        (reached.average, one.method)
+        (reached.average, one.label)
         for one in data.methods
         if (reached := one.reached[place]) and reached.average is not None
     ]
@@ -80,7 +84,7 @@ def draw_survey(data: SurveyData) -> matplotlib.figure.Figure:
     """Panels side by side on one logarithmic axis, the names of methods at the left of the first."""
     import matplotlib.figure
 
-    names = LETTER_INCHES * max(len(one.method) for one in data.methods) + 0.12
+    names = LETTER_INCHES * max(len(one.label) for one in data.methods) + 0.12
     height = _HEAD_INCHES + ROW_INCHES * len(data.methods) + _FOOT_INCHES
     figure = matplotlib.figure.Figure(figsize=(PAGE_INCHES, height))
     axes = figure.subplots(1, len(data.classes), sharex=True, sharey=True, squeeze=False)[0]
@@ -95,7 +99,7 @@ def draw_survey(data: SurveyData) -> matplotlib.figure.Figure:
     for place, (ax, (title, rigs)) in enumerate(zip(axes, data.classes, strict=True)):
         ax.set_title(f"{title}, {rigs} rig{'' if rigs == 1 else 's'}")
         _draw_class(ax, data, place)
-    axes[0].set_yticks(range(len(data.methods)), [one.method for one in data.methods])
+    axes[0].set_yticks(range(len(data.methods)), [one.label for one in data.methods])
     for one, label in zip(data.methods, axes[0].get_yticklabels(), strict=True):
         label.set_color(_COLOURS[one.works_from])
     axes[0].set_ylim(len(data.methods) - 0.4, -0.6)

@@ -38,6 +38,7 @@ from rectbench.reporting.tables.tabulation import (
 )
 from rectbench.runs.run import Run
 
+MOST_METHODS = 14
 _SHARES = (
     "A share of the view is that of the source pixels nearest to its middle, the same for all methods. "
     "Shown, area and shape are over what each method itself shows, be it little, and name no best method."
@@ -49,12 +50,13 @@ _PROTOCOLS = (
 
 
 def rig_table(run: Run) -> Table | None:
-    """The ranking column, a row a rig, a column a method; then the same for each motion. None for one rig.
+    """The ranking column, a row a rig, a column a method; then the same for each motion.
 
-    Rigs stand in the order of their field of view.
+    Rigs stand in the order of their field of view. None for one rig, and for more methods than a page has
+    room for beside each other: their distortion by view has a section a rig.
     """
     results, ranking = run.select(pose=run.geometric_pose), run.catalogue.ranking
-    if len(run.rigs) < 2 or ranking.key not in run.metrics:
+    if len(run.rigs) < 2 or len(run.methods) > MOST_METHODS or ranking.key not in run.metrics:
         return None
     found = standing(summaries_of(run, results, [ranking]), results, run.catalogue)
     methods = [s.method for s in found.summaries]

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from rectbench.plugins.metric import Column
 from rectbench.plugins.result import Result
-from rectbench.reporting.curves import ranked_by
 from rectbench.reporting.names import named
-from rectbench.reporting.survey import NAME, Surveyed, lens_classes, surveyed
+from rectbench.reporting.shares import measure
+from rectbench.reporting.survey import NAME, Reached, lens_classes, surveyed, surveyed_columns
 from rectbench.reporting.tables.captions import capitalised
 from rectbench.reporting.tables.numbers import MISSING
 from rectbench.reporting.tables.summaries import averaged
@@ -33,45 +34,46 @@ def survey_table(run: Run, part: Run) -> Table | None:
 
     None where no field of view is known.
     """
-    classes, ranking = lens_classes(part), part.catalogue.ranking
-    if not classes:
+    classes, columns = lens_classes(part), surveyed_columns(part)
+    if not classes or not columns:
         return None
-    methods = surveyed(part, ranking, part.geometric_pose)
-    fields = [_class_field(methods, place, part) for place in range(len(classes))]
-    rows = [_row_error(part.select(method=one.method), part) for one in methods]
-    times = [_times(run, part.select(method=one.method)) for one in methods]
+    heads = (
+        text_heading("method"),
+        text_heading("works from"),
+        *(Heading(f"{c.title} ({len(c.rigs)})", f"class_{place}") for place, c in enumerate(classes, 1)),
+        *(_heading(part, key) for key in (ROWS, *SPEED)),
+    )
     return Table(
         kind="main",
         part=part.group,
         name=named(part, NAME),
         title=titled(part, "All methods, all lenses"),
         caption=(
-            f"{capitalised(ranked_by(part.catalogue))} by class of lenses, by the horizontal field of view "
-            "that both images show: geometric means over the rigs of a class, exact pose; or why some pair "
-            f"of the class has none. Row errors are under the {' and '.join(part.noisy_poses)} pose, over "
-            "all lenses that the method serves; times are single calls on one core."
+            f"{capitalised(measure(part.catalogue.ranking))} by class of lenses, by the horizontal field of "
+            "view that both images show, in brackets how many rigs: geometric means over the rigs of a "
+            f"class, {part.geometric_pose} pose; or why some pair of the class has none. What serves more "
+            "classes stands higher, then what distorts less. Row errors are under the "
+            f"{' and '.join(part.noisy_poses)} pose, over all lenses that the method serves."
         ),
-        headings=(
-            text_heading("method"),
-            text_heading("works from"),
-            *(Heading(f"{c.title} ({len(c.rigs)})", f"{ranking.key}_{i}") for i, c in enumerate(classes, 1)),
-            *(_heading(part, key) for key in (ROWS, *SPEED)),
+        headings=heads,
+        sections=tuple(
+            Section(f"{share} % of the view", _rows(run, part, column)) for share, column in columns.items()
         ),
-        sections=(
-            Section(
-                "",
-                tuple(
-                    (
-                        words(one.method),
-                        words(one.works_from),
-                        *(field[i] for field in fields),
-                        rows[i],
-                        *times[i],
-                    )
-                    for i, one in enumerate(methods)
-                ),
-            ),
-        ),
+    )
+
+
+def _rows(run: Run, part: Run, column: Column) -> tuple[tuple[Entry, ...], ...]:
+    methods = surveyed(part, column, part.geometric_pose)
+    fields = [_class_field(reached, column) for reached in zip(*(m.reached for m in methods), strict=True)]
+    return tuple(
+        (
+            words(one.label),
+            words(one.works_from),
+            *(field[place] for field in fields),
+            _row_error(part.select(method=one.method), part),
+            *_times(run, part.select(method=one.method)),
+        )
+        for place, one in enumerate(methods)
     )
 
 
@@ -80,18 +82,12 @@ def _heading(part: Run, key: str) -> Heading:
     return Heading(head_text(column), key, meaning=column.meaning)
 
 
-def _class_field(methods: Sequence[Surveyed], place: int, part: Run) -> list[Entry]:
-    ranking, entries, whole = part.catalogue.ranking, [], []
-    for one in methods:
-        reached = one.reached[place]
-        if reached is None:
-            entries.append(Entry(MISSING))
-        elif reached.why:
-            entries.append(Entry(reached.why))
-        else:
-            entries.append(number(reached.average, ranking))
-        whole.append(entries[-1].value is not None)
-    return with_best(entries, ranking, whole)
+def _class_field(reached: Sequence[Reached | None], column: Column) -> list[Entry]:
+    entries = [
+        Entry(MISSING) if one is None else Entry(one.why) if one.why else number(one.average, column)
+        for one in reached
+    ]
+    return with_best(entries, column, [entry.value is not None for entry in entries])
 
 
 def _row_error(results: Sequence[Result], part: Run) -> Entry:
