@@ -5,9 +5,7 @@ from scipy.optimize import least_squares
 
 import rectbench as rb
 
-from ._pencils import mapped, refuse_apart, rows_rms_px, sheared, shift
-
-RIGHT = np.array([1.0, 0.0])
+from ._homographies import mapped, refuse_apart, rows_rms_px, sheared, shift
 
 
 class DSR(rb.HomographyRectifier):
@@ -29,10 +27,10 @@ class DSR(rb.HomographyRectifier):
     ) -> tuple[np.ndarray, np.ndarray, dict[str, float | str]]:
         left, right = (px - view.centre for px in view.matches)
         H_right = sheared(level(left[:, 1], right, unit=sum(view.size) / 2), view.size)
-        H_right = shift((left - mapped(H_right, right))[:, 0].min() * RIGHT) @ H_right
+        H_right = shift((left - mapped(H_right, right))[:, 0].min(), 0) @ H_right
         rms_px = rows_rms_px(np.eye(3), left, H_right, right)
         refuse_apart(rms_px, view, "one homography leaves", "cameras that look the same way along the rows")
-        H_right = shift(view.centre) @ H_right @ shift(-view.centre)
+        H_right = shift(*view.centre) @ H_right @ shift(*-view.centre)
         return np.eye(3), H_right, {"rows_rms_px": rms_px}
 
     def placement(self, view: rb.PinholeView, H_left: np.ndarray, H_right: np.ndarray) -> np.ndarray:

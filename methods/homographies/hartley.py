@@ -4,7 +4,7 @@ import numpy as np
 
 import rectbench as rb
 
-from ._pencils import closest_columns
+from ._homographies import closest_columns
 
 
 class Hartley(rb.HomographyRectifier):

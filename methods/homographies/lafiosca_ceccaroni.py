@@ -4,7 +4,7 @@ import numpy as np
 
 import rectbench as rb
 
-from ._pencils import Pencils
+from ._homographies import Pencils
 
 
 class LafioscaCeccaroni(rb.HomographyRectifier):

@@ -5,7 +5,7 @@ from scipy.optimize import minimize_scalar
 
 import rectbench as rb
 
-from ._pencils import Pencils
+from ._homographies import Pencils
 
 PRECISION = 1e-10
 """Of the search, of the range of t."""

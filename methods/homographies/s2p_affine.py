@@ -4,14 +4,14 @@ import numpy as np
 
 import rectbench as rb
 
-from ._pencils import closest_columns, refuse_apart, rows_rms_px
+from ._homographies import closest_columns, refuse_apart, rows_rms_px
 
 
 class S2PAffine(rb.HomographyRectifier):
     """Two similarities from the affine fundamental matrix of least error, then a shear of the right columns.
 
-    Serves views in which perspective is as good as parallel, such as tiles of satellite images; `rows_rms_px`
-    in the notes is what it leaves between the rows of the matches.
+    Serves views in which perspective is as good as parallel: narrow ones of things farther away than deep,
+    such as tiles of satellite images. `rows_rms_px` is what it leaves between the rows of the matches.
     """
 
     name = "s2p-affine"

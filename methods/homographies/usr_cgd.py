@@ -5,16 +5,18 @@ from scipy.optimize import least_squares
 
 import rectbench as rb
 
-from ._pencils import mapped, polygon_area, shift
+from ._homographies import mapped, polygon_area, shift
 from ._turned_cameras import focal_range, fundamental_of, intrinsics, rotation, upright_roll
 
 IDEAL = np.array([1.0, 0.0, 0.0, 1.0])
 """Aspect ratio, skewness [deg], rotation [deg] and size ratio of an image that is not distorted,"""
 BOUND = np.array([0.2, 5.0, 30.0, 0.2])
 """and how far from these they may lie."""
+AIM = 0.9
+"""Share of the bound to which a measure is brought back that was beyond it."""
 FIRST_WEIGHT, HEAVIER, ROUNDS = 1e-2, 10.0, 5
-"""Squared pixels that count as much as a measure at its bound, once it is beyond; by what they are multiplied
-while it stays there; and how often."""
+"""Squared pixels that count as much as a measure being off by its bound, once it is beyond; by what they are
+multiplied while it stays there; and how often."""
 WORSE_PX = 0.1
 """The Sampson error may not grow by more for it."""
 ROUGHLY = 1e-3
@@ -54,7 +56,8 @@ class USRCGD(rb.HomographyRectifier):
             return (np.array([distortions(H, view.size) for H in turned(p, view)]) - ideal) / BOUND
 
         def cost(p: np.ndarray) -> np.ndarray:
-            return np.append(sampson(p), (np.sqrt(weights) * off(p)).ravel())
+            too_far = np.maximum(np.abs(off(p)) - AIM, 0)
+            return np.append(sampson(p), (np.sqrt(weights) * too_far).ravel())
 
         # Cameras one above the other need a quarter turn, which is then no distortion.
         roll = upright_roll(rb.fundamental_matrix(*view.matches), view.centre)
@@ -85,13 +88,14 @@ def turned(p: np.ndarray, view: rb.PinholeView) -> tuple[np.ndarray, np.ndarray]
     R_left, R_right = rotation(0.0, p[0], p[1]), rotation(p[2], p[3], p[4])
     K_left, K_right = intrinsics(f_left, view.centre), intrinsics(f_right, view.centre)
     K_new = intrinsics((f_left + f_right) / 2, view.centre)
-    down = shift(np.array([0, unit * p[7]]))
-    return K_new @ R_left @ np.linalg.inv(K_left), down @ K_new @ R_right @ np.linalg.inv(K_right)
+    return K_new @ R_left @ np.linalg.inv(K_left), shift(0, unit * p[7]) @ K_new @ R_right @ np.linalg.inv(
+        K_right
+    )
 
 
 def with_middle_column(H: np.ndarray, middle: np.ndarray) -> np.ndarray:
     """The same rows, the middle of the image in the middle column."""
-    return shift((middle - mapped(H, middle[None])[0]) * [1, 0]) @ H
+    return shift(middle[0] - mapped(H, middle[None])[0, 0], 0) @ H
 
 
 def distortions(H: np.ndarray, size: tuple[int, int]) -> np.ndarray:

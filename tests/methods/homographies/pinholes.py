@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 import rectbench as rb
-from tests.rigs_for_tests import rig
+from tests.rigs_for_tests import points_before, rig
 
 SIZE = (640, 480)
 CENTRE = np.array([319.5, 239.5])
@@ -29,6 +29,12 @@ def random_pinholes(seed: int) -> rb.Rig:
     return pinholes(
         tuple(rng.uniform(-10, 10, 3)), (0.2, *rng.uniform(-0.05, 0.05, 2)), rng.uniform(450, 900)
     )
+
+
+def rectified(pair: rb.Rig, method: str) -> rb.Rectification:
+    """By this method, from some hundred exact matches."""
+    _, left, right = points_before(pair, 150)
+    return rb.rectify(pair, method=method, matches=(left, right))
 
 
 def camera_matrix(rig: rb.Rig) -> np.ndarray:

@@ -8,21 +8,19 @@ from rectbench_methods.homographies.dsr import level
 from scipy.optimize import minimize
 
 import rectbench as rb
-from tests.methods.homographies.pinholes import homographies, pinholes
+from tests.methods.homographies.pinholes import homographies, pinholes, rectified
 from tests.rigs_for_tests import points_before
 
 
 def test_the_left_image_is_untouched() -> None:
-    H_left, _ = homographies(rb.rectify(pinholes((0.5, 0.5, 1.0)), method="dsr"))
+    H_left, _ = homographies(rectified(pinholes((0.5, 0.5, 1.0)), "dsr"))
     np.testing.assert_allclose(H_left, np.eye(3), atol=1e-9)
 
 
 def test_rows_correspond_where_the_left_epipole_is_at_infinity() -> None:
     pair = pinholes((2.0, 4.0, 3.0), (0.2, 0.0, 0.0))
     _, left, right = points_before(pair, 300)
-    assert (
-        rb.metrics.row_error(rb.rectify(pair, method="dsr"), left, right).columns()["row_error_max_px"] < 1e-9
-    )
+    assert rb.metrics.row_error(rectified(pair, "dsr"), left, right).columns()["row_error_max_px"] < 1e-9
 
 
 def test_no_homography_of_the_right_image_brings_its_rows_nearer() -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from rectbench_methods.homographies._pencils import Pencils
+from rectbench_methods.homographies._homographies import Pencils
 from rectbench_methods.homographies.lafiosca_ceccaroni import least_distorted
 from rectbench_methods.homographies.loop_zhang import nearest_affine
 from scipy.optimize import minimize_scalar
@@ -19,6 +19,7 @@ from tests.methods.homographies.pinholes import (
     pinholes,
     pixel_grid,
     random_pinholes,
+    rectified,
 )
 
 BOTH = ("loop-zhang", "lafiosca-ceccaroni")
@@ -28,7 +29,7 @@ EDGES = np.array([[-0.5, 239.5], [639.5, 239.5], [319.5, -0.5], [319.5, 479.5]])
 
 
 def distortion(w_left: np.ndarray, w_right: np.ndarray) -> float:
-    """The mean of ((w_i - w_c)/w_c)² over the pixels, w_c the mean; of both images (Loop and Zhang, 5.1)."""
+    """The mean of ((w_i - w_c)/w_c)² over the pixels, w_c the mean; of both images (Loop and Zhang)."""
     weights = [PIXELS @ w for w in (w_left, w_right)]
     return float(sum(((w - w.mean()) ** 2).mean() / w.mean() ** 2 for w in weights))
 
@@ -45,7 +46,7 @@ def through(H: np.ndarray, pixels: np.ndarray) -> np.ndarray:
 
 @pytest.mark.parametrize("method", BOTH)
 def test_the_criterion_told_is_that_of_the_delivered_homographies(method: str) -> None:
-    rect = rb.rectify(pinholes(), method=method)
+    rect = rectified(pinholes(), method)
     H_left, H_right = homographies(rect)
     assert rect.notes["projective_distortion"] == pytest.approx(distortion(H_left[2], H_right[2]), rel=1e-8)
 
@@ -58,7 +59,7 @@ def test_no_direction_has_less_projective_distortion(method: str) -> None:
     brute = minimize_scalar(
         lambda angle: distortion(np.cross(epipole, z := direction(angle)), F @ z), bounds=(0, np.pi)
     )
-    found = float(rb.rectify(pair, method=method).notes["projective_distortion"])
+    found = float(rectified(pair, method).notes["projective_distortion"])
     assert found <= brute.fun * (1 + 1e-9)
     assert found == pytest.approx(brute.fun, rel=1e-6)
 
@@ -76,7 +77,7 @@ def test_the_quartic_has_the_least_of_all(seed: int) -> None:
 
 @pytest.mark.parametrize("method", BOTH)
 def test_midlines_stay_perpendicular_and_keep_their_ratio(method: str) -> None:
-    for H in homographies(rb.rectify(pinholes(), method=method)):
+    for H in homographies(rectified(pinholes(), method)):
         ends = through(H, EDGES)
         across, down = ends[1] - ends[0], ends[3] - ends[2]
         assert across @ down == pytest.approx(0, abs=1e-6)
@@ -85,7 +86,7 @@ def test_midlines_stay_perpendicular_and_keep_their_ratio(method: str) -> None:
 
 @pytest.mark.parametrize("method", BOTH)
 def test_the_sum_of_areas_is_kept(method: str) -> None:
-    pair = homographies(rb.rectify(pinholes(), method=method))
+    pair = homographies(rectified(pinholes(), method))
     # det J of a homography that is 1 in the middle, summed over the pixels.
     assert sum((np.linalg.det(H) / (PIXELS @ H[2]) ** 3).sum() for H in pair) == pytest.approx(
         2 * SIZE[0] * SIZE[1], rel=1e-5
@@ -94,5 +95,5 @@ def test_the_sum_of_areas_is_kept(method: str) -> None:
 
 @pytest.mark.parametrize("method", BOTH)
 def test_each_middle_is_in_the_middle_column(method: str) -> None:
-    for H in homographies(rb.rectify(pinholes(), method=method)):
+    for H in homographies(rectified(pinholes(), method)):
         assert through(H, CENTRE[None])[0, 0] == pytest.approx(CENTRE[0])

@@ -8,12 +8,12 @@ from rectbench_methods.homographies.three_step import onto_rows, three_turns
 from scipy.spatial.transform import Rotation
 
 import rectbench as rb
-from tests.methods.homographies.pinholes import pinholes, random_pinholes
+from tests.methods.homographies.pinholes import pinholes, random_pinholes, rectified
 
 
 @pytest.mark.parametrize("focal", [380.0, 520.0, 900.0])
 def test_the_focal_length_is_found(focal: float) -> None:
-    rect = rb.rectify(pinholes((2.0, 8.0, 3.0), focal=focal), method="three-step")
+    rect = rectified(pinholes((2.0, 8.0, 3.0), focal=focal), "three-step")
     assert rect.notes["focal_px"] == pytest.approx(focal, rel=1e-5)
     assert "warning" not in rect.notes
 

@@ -1,4 +1,4 @@
-"""What the homographies that rectify a given epipolar geometry have in common, after Loop and Zhang (1999).
+"""What homographies that rectify have in common, after Loop and Zhang (1999).
 
 Two homographies make rows correspond where their rows v and w are corresponding epipolar lines:
 v̂ = (v · x)/(w · x) is then the same number for a pixel x and its match. The first row u of each is free.
@@ -14,7 +14,7 @@ from numpy.polynomial import Polynomial
 
 import rectbench as rb
 
-WORST_ROWS_SHARE = 0.02
+WORST_ROWS_SHARE = 0.005
 """Of the image's height: matches whose rows are farther apart are not rectified."""
 
 
@@ -36,7 +36,7 @@ class Pencils:
     @classmethod
     def of(cls, F: np.ndarray, view: rb.PinholeView) -> Pencils:
         """The pencils of a fundamental matrix between the images of a view."""
-        to_corner = shift(view.centre)
+        to_corner = shift(*view.centre)
         return cls(to_corner.T @ F @ to_corner, view.centre, view.size)
 
     @cached_property
@@ -50,7 +50,7 @@ class Pencils:
     @cached_property
     def variances(self) -> tuple[tuple[Polynomial, Polynomial], ...]:
         """(a, line) of each image: a(t)/line(t)² is the variance of w · x over its pixels, relative to its
-        square in the middle (section 5.1): 0 where w is at infinity, infinite where w meets the middle."""
+        square in the middle. It is 0 where w is at infinity, and infinite where w meets the middle."""
         spread = (np.array([*self.size, 1]) ** 2 - 1) / 12  # of pixels; the third coordinate is 1 for all
         quadratics = [base.T @ (spread[:, None] * base) for base in self.bases]
         return tuple(
@@ -59,11 +59,11 @@ class Pencils:
         )
 
     def projective_distortion(self, t: float) -> float:
-        """Loop and Zhang's criterion of a pair: the sum of both images' variances (equation 11)."""
+        """Loop and Zhang's criterion of a pair, the sum of both images' variances."""
         return float(sum(a(t) / line(t) ** 2 for a, line in self.variances))
 
     def similar(self, t: float) -> tuple[np.ndarray, np.ndarray]:
-        """The homographies [3, 3] of the pair w whose affine parts are similarities (section 6).
+        """The homographies [3, 3] of the pair w whose affine parts are similarities.
 
         Their scales have the geometric mean 1, and both images stay as upright as they can.
         """
@@ -79,7 +79,7 @@ class Pencils:
         return left, right
 
     def of_kept_area(self, H_left: np.ndarray, H_right: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Both scaled by one factor, so that the images' areas have the sum they had (section 7)."""
+        """Both scaled by one factor, so that the images' areas have the sum they had."""
         w, h = self.size
         corners = np.array([[-w, -h], [w, -h], [w, h], [-w, h]]) / 2
         areas = [polygon_area(mapped(H, corners)) for H in (H_left, H_right)]
@@ -88,7 +88,7 @@ class Pencils:
 
     def between_pixels(self, H: np.ndarray) -> np.ndarray:
         """The same homography of pixels that count from the upper left one, on either side."""
-        return shift(self.middle) @ H @ shift(-self.middle)
+        return shift(*self.middle) @ H @ shift(*-self.middle)
 
     def rectified(self, t: float) -> tuple[np.ndarray, np.ndarray]:
         """Loop and Zhang's homographies H_s H_r H_p between pixels [3, 3], of the pair w that t gives."""
@@ -96,9 +96,9 @@ class Pencils:
         return self.between_pixels(left), self.between_pixels(right)
 
 
-def shift(by: np.ndarray) -> np.ndarray:
-    """The homography that moves pixels by (x, y)."""
-    return np.array([[1, 0, by[0]], [0, 1, by[1]], [0, 0, 1.0]])
+def shift(x: float, y: float) -> np.ndarray:
+    """The homography that moves pixels."""
+    return np.array([[1, 0, x], [0, 1, y], [0, 0, 1.0]])
 
 
 def mapped(H: np.ndarray, pixels: np.ndarray) -> np.ndarray:
@@ -124,7 +124,7 @@ def closest_columns(
 
 def sheared(H: np.ndarray, size: tuple[int, int]) -> np.ndarray:
     """H with columns a û + b v̂ that keep the image's two midlines across each other and the ratio of their
-    lengths (Loop and Zhang, section 7), the middle at û = 0; pixels count from the middle."""
+    lengths (Loop and Zhang's shear), the middle at û = 0; pixels count from the middle."""
     w, h = size
     ends = mapped(H, np.array([[w, 0], [-w, 0], [0, h], [0, -h]]) / 2)
     (x_u, x_v), (y_u, y_v) = ends[0] - ends[1], ends[2] - ends[3]
