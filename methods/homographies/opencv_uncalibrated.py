@@ -15,8 +15,8 @@ class Options(rb.Options):
 class OpenCVUncalibrated(rb.HomographyRectifier[Options]):
     """`cv2.stereoRectifyUncalibrated`, which is Hartley's method, its images where it puts them.
 
-    Its epipole has the digits of single precision (OpenCV 5.0): where the epipoles are millions of pixels away,
-    rows are tenths of a pixel off and more, even with exact matches.
+    Its epipole has the digits of single precision (OpenCV 5.0): where it is millions of pixels away, rows are
+    tenths of a pixel off and more, even with exact matches.
     """
 
     name = "opencv-uncalibrated"

@@ -7,6 +7,7 @@ import pytest
 from rectbench_methods.homographies.gluckman_nayar import area_means
 from scipy.optimize import minimize
 
+from rectbench.metrics.homography.gluckman_nayar import local_changes
 from tests.methods.homographies.pinholes import (
     SIZE,
     fundamental,
@@ -33,6 +34,7 @@ def test_the_change_told_is_that_of_the_delivered_maps() -> None:
     areas = [np.linalg.det(warp.jacobian(pixels)) for warp in (rect.left, rect.right)]
     assert rect.notes["area_change"] == pytest.approx(np.mean([(a - 1) ** 2 for a in areas]), rel=1e-2)
     assert rect.notes["area_change"] == pytest.approx(area_change(*homographies(rect)), rel=1e-2)
+    assert rect.notes["area_change"] == pytest.approx(local_changes(rect)[0], rel=1e-2)
 
 
 @pytest.mark.parametrize("seed", range(3))

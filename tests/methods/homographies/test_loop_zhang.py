@@ -10,6 +10,7 @@ from rectbench_methods.homographies.loop_zhang import nearest_affine
 from scipy.optimize import minimize_scalar
 
 import rectbench as rb
+from rectbench.metrics.homography.loop_zhang import projective_criterion
 from rectbench.plugins.rectifier import pose_problem
 from tests.methods.homographies.pinholes import (
     CENTRE,
@@ -49,6 +50,8 @@ def test_the_criterion_told_is_that_of_the_delivered_homographies(method: str) -
     rect = rectified(pinholes(), method)
     H_left, H_right = homographies(rect)
     assert rect.notes["projective_distortion"] == pytest.approx(distortion(H_left[2], H_right[2]), rel=1e-8)
+    printed = projective_criterion(rect.left) + projective_criterion(rect.right)
+    assert rect.notes["projective_distortion"] == pytest.approx(printed, rel=1e-2)
 
 
 @pytest.mark.parametrize("method", BOTH)

@@ -7,6 +7,8 @@ import pytest
 from rectbench_methods.homographies.usr_cgd import BOUND, IDEAL, distortions
 
 import rectbench as rb
+from rectbench.metrics.homography.outline import Outline
+from rectbench.metrics.homography.usr_cgd import aspect_ratio, rotation_deg, size_ratio, skewness_deg
 from tests.methods.homographies.pinholes import SIZE, homographies, pinholes, rectified
 from tests.rigs_for_tests import points_before
 
@@ -32,6 +34,17 @@ def test_a_zoom_is_size_and_nothing_else() -> None:
 def test_a_shear_turns_all_four_corners_by_its_angle() -> None:
     shear = np.array([[1, np.tan(np.radians(4)), 0], [0, 1, 0], [0, 0, 1]])
     np.testing.assert_allclose(distortions(shear, SIZE), [1, 4, 0, 1], atol=1e-9)
+
+
+def test_the_measures_are_those_that_reports_print() -> None:
+    rect = rectified(pinholes(), "usr-cgd")
+    source = Outline.of(SIZE)
+    for warp, H in zip((rect.left, rect.right), homographies(rect), strict=True):
+        outline = Outline.rectified(warp)
+        printed = [aspect_ratio(outline), skewness_deg(outline), rotation_deg(source, outline)]
+        aspect, skewness, turn, size = distortions(H, SIZE)
+        np.testing.assert_allclose([aspect, skewness, abs(turn)], printed, atol=1e-9)
+        assert size == pytest.approx(size_ratio(source, outline))
 
 
 def beyond(rect: rb.Rectification) -> bool:
