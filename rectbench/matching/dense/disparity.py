@@ -19,11 +19,11 @@ import rectbench.matching.dense.matchers  # noqa: F401  (shapes what is found, a
 from rectbench.cameras.projection import as_points
 from rectbench.errors import InvalidInput, InvalidResult, Unavailable, argument
 from rectbench.images.reading import grey8
+from rectbench.matching.dense.correlation import FloatMap
 from rectbench.matching.dense.matcher import USUAL_MATCHER, Image, Match, Matcher, matcher_named
 from rectbench.types import BoolArray, FloatArray
 from rectbench.warps import Rectification
 
-FloatMap = NDArray[np.float32]
 log = logging.getLogger("rectbench.matching")
 
 PIXELS = 1e6
@@ -146,7 +146,7 @@ def dense_disparity(
     confirmed = _agreeing(forth, back)
     smooth = _smoothed(confirmed, grey8(extended[0]))
     kept = np.where(np.abs(smooth - confirmed) <= AGREEMENT_PX, smooth, np.float32(np.nan))
-    return Disparity(rect, _without_speckles(kept), shown[0], (lowest, highest))
+    return Disparity(rect, without_speckles(kept), shown[0], (lowest, highest))
 
 
 def rgb8(image: NDArray[np.generic], side: str = "") -> Image:
@@ -284,7 +284,8 @@ def _in_one_piece() -> Iterator[None]:
         cv2.setNumThreads(threads)
 
 
-def _without_speckles(disparity: FloatMap) -> FloatMap:
+def without_speckles(disparity: FloatMap) -> FloatMap:
+    """Disparities [H, W], px, without small patches that stand apart from what is around them."""
     absent = -(1 << 15)
     steps = np.where(np.isfinite(disparity), np.rint(disparity * 16), absent).astype(np.int16)
     cv2.filterSpeckles(steps, absent, SPECKLE_PX, round(16 * AGREEMENT_PX))
