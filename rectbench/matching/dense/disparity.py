@@ -143,10 +143,8 @@ def dense_disparity(
     forth, back = _both_ways(match, extended[0], extended[1], lowest, highest)
     forth[~valid[0]] = np.nan
     back[~valid[1]] = np.nan
-    confirmed = _agreeing(forth, back)
-    smooth = _smoothed(confirmed, grey8(extended[0]))
-    kept = np.where(np.abs(smooth - confirmed) <= AGREEMENT_PX, smooth, np.float32(np.nan))
-    return Disparity(rect, without_speckles(kept), shown[0], (lowest, highest))
+    found = settled(_agreeing(forth, back), grey8(extended[0]))
+    return Disparity(rect, found, shown[0], (lowest, highest))
 
 
 def rgb8(image: NDArray[np.generic], side: str = "") -> Image:
@@ -252,6 +250,12 @@ def _agreeing(forth: FloatMap, back: FloatMap) -> FloatMap:
     return np.where(inside & (np.abs(answer - forth) <= AGREEMENT_PX), forth, np.float32(np.nan))
 
 
+def settled(confirmed: FloatMap, guide: Image) -> FloatMap:
+    """Confirmed disparities [H, W], px, smoothed along the edges of `guide` where that hardly changes them."""
+    smooth = _smoothed(confirmed, guide)
+    return _without_speckles(np.where(np.abs(smooth - confirmed) <= AGREEMENT_PX, smooth, np.float32(np.nan)))
+
+
 def _smoothed(disparity: FloatMap, guide: Image) -> FloatMap:
     """Weighted least squares along the edges of `guide` (Min et al. 2014), in floating point.
 
@@ -284,8 +288,7 @@ def _in_one_piece() -> Iterator[None]:
         cv2.setNumThreads(threads)
 
 
-def without_speckles(disparity: FloatMap) -> FloatMap:
-    """Disparities [H, W], px, without small patches that stand apart from what is around them."""
+def _without_speckles(disparity: FloatMap) -> FloatMap:
     absent = -(1 << 15)
     steps = np.where(np.isfinite(disparity), np.rint(disparity * 16), absent).astype(np.int16)
     cv2.filterSpeckles(steps, absent, SPECKLE_PX, round(16 * AGREEMENT_PX))

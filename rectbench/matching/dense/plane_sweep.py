@@ -22,7 +22,7 @@ from rectbench.cameras.projection import as_points
 from rectbench.errors import InvalidInput, argument
 from rectbench.images.reading import grey8
 from rectbench.matching.dense.correlation import LEAST_SCORE, FloatMap, correlation, most_alike
-from rectbench.matching.dense.disparity import AGREEMENT_PX, NEAREST_BASELINES, without_speckles
+from rectbench.matching.dense.disparity import AGREEMENT_PX, NEAREST_BASELINES, settled
 from rectbench.matching.dense.reconstruction import FARTHEST_BASELINES
 from rectbench.rigs import Rig
 from rectbench.types import BoolArray, FloatArray
@@ -78,8 +78,9 @@ def plane_sweep(
     nearest_baselines, farthest_baselines : distances from the camera, in baselines, from which things are
         sought and to which they are kept.
 
-    Both images are swept, and a depth counts where the right one's leads back to within two pixels. Raises
-    InvalidInput for images that are not the rig's, a normal of no length, or a number that makes no sense.
+    Both images are swept, and a depth counts where the right one's leads back to within two pixels; its
+    inverse is then smoothed as a disparity is, see `dense_disparity`. Raises InvalidInput for images that are
+    not the rig's, a normal of no length, or a number that makes no sense.
 
     >>> import cv2, numpy as np
     >>> import rectbench as rb
@@ -108,7 +109,7 @@ def plane_sweep(
     there[~(there >= 1 / farthest_m)] = np.nan
     back[~(back >= 1 / farthest_m)] = np.nan
     confirmed = np.where(_leads_back(rig, there, back), there, np.float32(np.nan))
-    nearness = step * without_speckles((confirmed / step).astype(np.float32))
+    nearness = step * settled((confirmed / step).astype(np.float32), small[0].astype(np.uint8))
     return SweptDepth(rig, (1 / nearness).astype(np.float32))
 
 
