@@ -251,7 +251,7 @@ def _agreeing(forth: FloatMap, back: FloatMap) -> FloatMap:
 
 
 def settled(confirmed: FloatMap, guide: Image) -> FloatMap:
-    """Confirmed disparities [H, W], px, smoothed along the edges of `guide` where that hardly changes them."""
+    """Confirmed disparities [H, W], px, smoothed along edges of `guide` where that hardly changes them."""
     smooth = _smoothed(confirmed, guide)
     return _without_speckles(np.where(np.abs(smooth - confirmed) <= AGREEMENT_PX, smooth, np.float32(np.nan)))
 
