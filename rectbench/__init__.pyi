@@ -38,6 +38,7 @@ from .matching import board_matches as board_matches
 from .matching import consistent_matches as consistent_matches
 from .matching import fundamental_matrix as fundamental_matrix
 from .matching import matcher as matcher
+from .matching import plane_sweep as plane_sweep
 from .matching import reconstruct as reconstruct
 from .matching import sampson_residuals as sampson_residuals
 from .matching import sift_matches as sift_matches

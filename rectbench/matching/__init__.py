@@ -9,6 +9,8 @@ from rectbench.matching.dense.matcher import USUAL_MATCHER as USUAL_MATCHER
 from rectbench.matching.dense.matcher import Matcher as Matcher
 from rectbench.matching.dense.matcher import matcher as matcher
 from rectbench.matching.dense.matcher import matcher_named as matcher_named
+from rectbench.matching.dense.plane_sweep import SweptDepth as SweptDepth
+from rectbench.matching.dense.plane_sweep import plane_sweep as plane_sweep
 from rectbench.matching.dense.reconstruction import Reconstruction as Reconstruction
 from rectbench.matching.dense.reconstruction import reconstruct as reconstruct
 from rectbench.matching.features.matches import match_features as match_features

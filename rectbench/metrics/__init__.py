@@ -33,6 +33,7 @@ from rectbench.metrics.row_misfit import RowMisfit as RowMisfit
 from rectbench.metrics.row_misfit import row_misfit as row_misfit
 from rectbench.metrics.sampling import sampling as sampling
 from rectbench.metrics.timing import Timing as Timing
+from rectbench.metrics.unrectified.plane_sweep import PlaneSweep as PlaneSweep
 from rectbench.metrics.view import View as View
 from rectbench.scored import dense_pixels as dense_pixels
 from rectbench.warps.jacobians import Jacobians as Jacobians

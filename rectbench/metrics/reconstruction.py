@@ -101,13 +101,6 @@ def _quantile(values: FloatArray, q: float) -> float:
     return float(np.quantile(found, q)) if found.size else math.nan
 
 
-def case_reconstruction_scores(case: Case) -> dict[str, float]:
-    """Those of a case's pair, matched as the report asks."""
-    images = case.pair.images
-    found = reconstruct(case.rect, images.left, images.right, case.matcher)
-    return reconstruction_scores(found, case.pair.truth)
-
-
 class DenseReconstruction(Metric):
     """How much of what both cameras see dense matching on the rectified pair finds, and how far off."""
 
@@ -156,4 +149,6 @@ class DenseReconstruction(Metric):
 
     def compute(self, case: Case) -> dict[str, float]:
         """By the report's matcher on the images as the method rectifies them."""
-        return dict(case.once(case_reconstruction_scores))
+        images = case.pair.images
+        found = reconstruct(case.rect, images.left, images.right, case.matcher)
+        return reconstruction_scores(found, case.pair.truth)

@@ -19,11 +19,11 @@ import rectbench.matching.dense.matchers  # noqa: F401  (shapes what is found, a
 from rectbench.cameras.projection import as_points
 from rectbench.errors import InvalidInput, InvalidResult, Unavailable, argument
 from rectbench.images.reading import grey8
+from rectbench.matching.dense.correlation import FloatMap
 from rectbench.matching.dense.matcher import USUAL_MATCHER, Image, Match, Matcher, matcher_named
 from rectbench.types import BoolArray, FloatArray
 from rectbench.warps import Rectification
 
-FloatMap = NDArray[np.float32]
 log = logging.getLogger("rectbench.matching")
 
 PIXELS = 1e6
@@ -143,10 +143,8 @@ def dense_disparity(
     forth, back = _both_ways(match, extended[0], extended[1], lowest, highest)
     forth[~valid[0]] = np.nan
     back[~valid[1]] = np.nan
-    confirmed = _agreeing(forth, back)
-    smooth = _smoothed(confirmed, grey8(extended[0]))
-    kept = np.where(np.abs(smooth - confirmed) <= AGREEMENT_PX, smooth, np.float32(np.nan))
-    return Disparity(rect, _without_speckles(kept), shown[0], (lowest, highest))
+    found = settled(_agreeing(forth, back), grey8(extended[0]))
+    return Disparity(rect, found, shown[0], (lowest, highest))
 
 
 def rgb8(image: NDArray[np.generic], side: str = "") -> Image:
@@ -250,6 +248,12 @@ def _agreeing(forth: FloatMap, back: FloatMap) -> FloatMap:
     column = np.where(inside, np.rint(target), 0).astype(np.int32)
     answer = np.take_along_axis(back, column, axis=1)
     return np.where(inside & (np.abs(answer - forth) <= AGREEMENT_PX), forth, np.float32(np.nan))
+
+
+def settled(confirmed: FloatMap, guide: Image) -> FloatMap:
+    """Confirmed disparities [H, W], px, smoothed along edges of `guide` where that hardly changes them."""
+    smooth = _smoothed(confirmed, guide)
+    return _without_speckles(np.where(np.abs(smooth - confirmed) <= AGREEMENT_PX, smooth, np.float32(np.nan)))
 
 
 def _smoothed(disparity: FloatMap, guide: Image) -> FloatMap:
