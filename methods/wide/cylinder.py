@@ -41,20 +41,9 @@ class Cylinder(rb.Rectifier[Options]):
     def fit(self, problem: rb.Problem, options: Options) -> rb.Rectification:
         rig = problem.rig
         focal = options.focal_px or rb.centre_resolution_px(rig)
-        reach = float(np.radians(options.along_deg) / 2)
-        around, along = rb.Radial("equidistant", focal, 0.0), rb.Radial("cylindrical", focal, 0.0)
+        reach_px = focal * float(np.tan(np.radians(options.along_deg) / 2))
+        along, around = rb.Radial("cylindrical", focal, 0.0), rb.Radial("equidistant", focal, 0.0)
+        notes: dict[str, float | str] = {"focal_px": focal}
         if options.axis == "baseline":
-            view = within(rb.view_angles(rig), reach)
-            return rb.Rectification.from_profiles(rig, along, along, around, {"focal_px": focal}, view=view)
-        bounded = rb.Cubic(0.0, focal, 0.0, 0.0, -np.tan(reach), np.tan(reach))
-        ends = rb.Composed(bounded, rb.Radial("cylindrical", 1.0, 0.0), -reach, reach)
-        return in_epipolar_frame(rig, rb.Upright(around, ends), {"focal_px": focal})
-
-
-def within(view: rb.ViewAngles, reach: float) -> rb.ViewAngles:
-    """The view less what is farther from its middle plane than `reach`, radians, along the baseline."""
-    left, right = (
-        span._replace(low=max(span.low, -reach), high=min(span.high, reach))
-        for span in (view.gamma_left, view.gamma_right)
-    )
-    return view._replace(gamma_left=left, gamma_right=right)
+            return in_epipolar_frame(rig, rb.Epipolar(along, around), notes, (reach_px, np.inf))
+        return in_epipolar_frame(rig, rb.Upright(around, along), notes, (np.inf, reach_px))

@@ -1,10 +1,10 @@
 """mrcal's rectified system with LENSMODEL_LATLON, a transverse equirectangular image."""
 
-import numpy as np
-
 import rectbench as rb
 
 from ._mrcal import RADIANS, MrcalFrame
+
+MOST_DEG = 360.0
 
 
 class Options(rb.Options):
@@ -29,18 +29,13 @@ class MrcalLatlon(rb.Rectifier[Options]):
 
     def fit(self, problem: rb.Problem, options: Options) -> rb.Rectification:
         rig, frame = problem.rig, MrcalFrame.of(problem.rig)
-        reaches = frame.reach(rig, rb.Epipolar(RADIANS, RADIANS))
-        fovs = [
-            2 * reach if fov_deg is None else np.radians(fov_deg)
-            for fov_deg, reach in zip((options.az_fov_deg, options.el_fov_deg), reaches, strict=True)
-        ]
-        middles, size, profiles = (frame.azimuth, 0.0), [], []
+        asked_deg = options.az_fov_deg, options.el_fov_deg
+        fovs = frame.fields_of_view(rig, asked_deg, rb.Epipolar(RADIANS, RADIANS), MOST_DEG)
+        size, profiles = [], []
+        middles = frame.azimuth, 0.0
         for fov, resolution, middle in zip(fovs, frame.px_per_rad(rig.left), middles, strict=True):
             side = max(1, round(fov * options.pixels_per_deg * resolution))
-            focal = float(side / fov)
+            focal = side / fov
             size.append(side)
             profiles.append(rb.Radial("equidistant", focal, (side - 1) / 2 - focal * middle))
-        target = rb.Epipolar(*profiles)
-        left = rb.Warp(rig.left, frame.R_rect_left, target)
-        right = rb.Warp(rig.right, frame.R_rect_right, target)
-        return rb.Rectification(rig, left, right, (size[0], size[1]), {"az0_deg": np.degrees(frame.azimuth)})
+        return frame.rectification(rig, rb.Epipolar(*profiles), size)

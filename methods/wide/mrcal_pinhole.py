@@ -35,15 +35,11 @@ class MrcalPinhole(rb.Rectifier[Options]):
 
     def fit(self, problem: rb.Problem, options: Options) -> rb.Rectification:
         rig, frame = problem.rig, MrcalFrame.of(problem.rig)
-        reaches = frame.reach(rig, rb.Planospheric(RADIANS, RADIANS))
-        fovs = [
-            min(2 * reach, np.radians(MOST_DEG)) if fov_deg is None else np.radians(fov_deg)
-            for fov_deg, reach in zip((options.az_fov_deg, options.el_fov_deg), reaches, strict=True)
-        ]
+        asked_deg = options.az_fov_deg, options.el_fov_deg
+        fovs = frame.fields_of_view(rig, asked_deg, rb.Planospheric(RADIANS, RADIANS), MOST_DEG)
         focals, centres, size = [], [], []
-        for fov, resolution, middle in zip(
-            fovs, frame.px_per_rad(rig.left), (frame.azimuth, 0.0), strict=True
-        ):
+        middles = frame.azimuth, 0.0
+        for fov, resolution, middle in zip(fovs, frame.px_per_rad(rig.left), middles, strict=True):
             focal = options.pixels_per_deg * resolution * np.cos(middle) ** 2
             half = half_width(fov, np.tan(middle))
             focals.append(focal)
@@ -51,9 +47,7 @@ class MrcalPinhole(rb.Rectifier[Options]):
             size.append(round(2 * focal * half) + 1)
         (fx, fy), (cx, cy) = focals, centres
         target = rb.Perspective(np.array([[fx, 0, cx], [0, fy, cy], [0, 0, 1.0]]))
-        left = rb.Warp(rig.left, frame.R_rect_left, target)
-        right = rb.Warp(rig.right, frame.R_rect_right, target)
-        return rb.Rectification(rig, left, right, (size[0], size[1]), {"az0_deg": np.degrees(frame.azimuth)})
+        return frame.rectification(rig, target, size)
 
 
 def half_width(fov: float, middle: float) -> float:

@@ -47,5 +47,5 @@ class MultiPinhole(rb.Rectifier[Options]):
             )
         prism = rb.Prism(focal, 0.0, 0.0, beta.low + piece / 2, piece, options.pieces)
         notes: dict[str, float | str] = {"focal_px": focal, "piece_deg": float(np.degrees(piece))}
-        columns_px = focal * float(np.tan(np.radians(options.along_deg) / 2))
-        return in_epipolar_frame(rig, prism, notes, columns_px)
+        reach_px = focal * float(np.tan(np.radians(options.along_deg) / 2))
+        return in_epipolar_frame(rig, prism, notes, (reach_px, np.inf))

@@ -7,8 +7,8 @@ import rectbench as rb
 
 LENSES = {"kannala-brandt": ("k1", "k2", "k3", "k4"), "equidistant": ()}
 """What cv2.fisheye knows, and the coefficients by their names here."""
-LEAST_FOCAL_SHARE = 0.01
-"""A focal length below this share of the source's resolution shows the world as a dot."""
+FOCAL_SHARES, LEAST_SHOWN = (0.05, 20.0), 0.1
+"""Focal lengths, as shares of the source's resolution, and shares of its pixels, that are no accident."""
 
 
 class Options(rb.Options):
@@ -22,7 +22,7 @@ class OpenCVFisheye(rb.Rectifier[Options]):
     """OpenCV's rotations and new camera matrices, for lenses after Kannala and Brandt: û = c_x + f x/z.
 
     It sizes the image by the middles of the source's edges; of lenses of 180° and more these have no place in
-    a plane, and what comes out is refused where it is a dot. Both principal points agree
+    a plane, and what comes out is refused where it shows next to nothing. Both principal points agree
     (CALIB_ZERO_DISPARITY, as in OpenCV's samples).
     """
 
@@ -49,15 +49,20 @@ class OpenCVFisheye(rb.Rectifier[Options]):
             balance=options.balance,
             fov_scale=options.fov_scale,
         )
-        focal = float(P1[0, 0])
-        if not focal >= LEAST_FOCAL_SHARE * rb.centre_resolution_px(rig) or not np.isfinite(P2).all():
+        focal, resolution = float(P1[0, 0]), rb.centre_resolution_px(rig)
+        too_wide = "the lens is too wide for it, or the cameras look too far off the baseline's middle plane"
+        if not FOCAL_SHARES[0] <= focal / resolution <= FOCAL_SHARES[1]:
             raise rb.Unsupported(
-                f"cv2.fisheye.stereoRectify gives f = {focal:.3g} px where the source has "
-                f"{rb.centre_resolution_px(rig):.0f}: the lens is too wide for it"
+                f"cv2.fisheye.stereoRectify gives f = {focal:.3g} px where the source has {resolution:.0f}: "
+                + too_wide
             )
         left = rb.Warp(rig.left, R1, rb.Perspective(P1[:, :3]))
         right = rb.Warp(rig.right, R2, rb.Perspective(P2[:, :3]))
-        return rb.Rectification(rig, left, right, rig.left.size, {"focal_px": focal})
+        rect = rb.Rectification(rig, left, right, rig.left.size, {"focal_px": focal})
+        shown = rb.metrics.coverage(rect, rig)["coverage_pixels"]
+        if shown < LEAST_SHOWN:
+            raise rb.Unsupported(f"cv2.fisheye.stereoRectify shows {shown:.1%} of the sources: {too_wide}")
+        return rect
 
 
 def intrinsics(camera: rb.Camera) -> tuple[np.ndarray, np.ndarray]:

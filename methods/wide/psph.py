@@ -4,8 +4,6 @@ import numpy as np
 
 import rectbench as rb
 
-from ._frames import in_epipolar_frame
-
 LIMIT_RAD = np.radians(85.0)
 """Towards 90° planes about the vertical and about the baseline become one, and pixels infinitely long."""
 
@@ -32,5 +30,23 @@ class Psph(rb.Rectifier[Options]):
     def fit(self, problem: rb.Problem, options: Options) -> rb.Rectification:
         rig = problem.rig
         focal = options.focal_px or rb.centre_resolution_px(rig)
-        even = rb.Cubic(0.0, focal, 0.0, 0.0, -LIMIT_RAD, LIMIT_RAD)
-        return in_epipolar_frame(rig, rb.Planospheric(even, even), {"focal_px": focal})
+        spans = longitudes(rig, 1 / focal), rb.view_angles(rig).beta
+        (left, right), (top, bottom) = (np.clip(span, -LIMIT_RAD, LIMIT_RAD) for span in spans)
+        if not (left < right and top < bottom):
+            raise rb.Unsupported("all that the lenses show lies 85° and more aside")
+        columns, rows = (rb.Cubic(0.0, focal, 0.0, 0.0, *ends) for ends in ((left, right), (top, bottom)))
+        target = rb.Planospheric(columns, rows).framed(focal * left, focal * top, 1.0, 1.0)
+        size = int(np.ceil(focal * (right - left))), int(np.ceil(focal * (bottom - top)))
+        return rb.Rectification.from_targets(rig, target, target, size, {"focal_px": focal})
+
+
+def longitudes(rig: rb.Rig, rad_per_px: float) -> tuple[float, float]:
+    """The least and the greatest atan2(x, z) of both views, radians, a pixel of the outline's grid wider."""
+    even = rb.Radial("equidistant", 1.0, 0.0)
+    least, greatest = [], []
+    for camera, R_rect_cam in zip((rig.left, rig.right), rb.rectifying_rotations(rig), strict=True):
+        pixels, spacing_px = rb.outline_pixels(camera)
+        found = rb.Warp(camera, R_rect_cam, rb.Upright(even, even)).forward(pixels)[:, 0]
+        least.append(np.nanmin(found) - spacing_px * rad_per_px)
+        greatest.append(np.nanmax(found) + spacing_px * rad_per_px)
+    return float(min(least)), float(max(greatest))

@@ -49,6 +49,17 @@ FAULTS = {
 }
 
 
+def test_a_control_may_have_any_rows(tmp_path: Path) -> None:
+    file = Path(write_method(tmp_path, "control", FAULTS["rows"][1]))
+    source = file.read_text()
+    declared = source.replace('name = "control"', 'name = "control"\n    is_control = True')
+    assert declared != source
+    file.write_text(declared)
+    assert failed(str(file)) == {}
+    rows = [finding.detail for finding in findings(str(file)) if finding.check == "rows"]
+    assert all("a control, whose rows are no epipolar planes" in detail for detail in rows)
+
+
 @pytest.mark.parametrize("name", FAULTS)
 def test_each_fault_fails_its_check_and_no_other(tmp_path: Path, name: str) -> None:
     check, fault = FAULTS[name]

@@ -24,9 +24,12 @@ def test_the_best_has_the_least_log_distortion_at_equal_coverage() -> None:
     choice = best_method(RIG, framing=Framing(coverage=0.9))
     table = choice.table
     assert set(table["method"]) >= {"abraham", "conventional", "hartley", "local-homography", "polar-optimal"}
-    assert (table["status"] == "ok").all()
-    np.testing.assert_allclose(table["coverage_pixels"], 0.9, atol=0.005)
-    assert table["log_distortion_on_view"].is_monotonic_increasing
+    applies = table["status"] == "ok"
+    assert table["method"][~applies].tolist() == ["opencv-omnidir"]  # which knows another kind of lens
+    np.testing.assert_allclose(table["coverage_pixels"][applies], 0.9, atol=0.005)
+    rectifies = table["log_distortion_on_view"].notna()
+    assert table["log_distortion_on_view"][rectifies].is_monotonic_increasing
+    assert set(table["method"][applies & ~rectifies]) == {"equirectangular", "stereographic-circles"}
     assert choice.best.method == table["method"][0] == "polar-optimal"
     assert choice.best.method in choice.why
     assert "90% of the source pixels" in choice.why

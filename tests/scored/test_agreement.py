@@ -13,9 +13,11 @@ import pytest
 import rectbench as rb
 from rectbench.scored import Delivered, ScoredView, check_agreement
 from rectbench.scored.agreement import TABLE_PX
+from rectbench.scored.differences import differences, off_derivative
 from rectbench.scored.pieces import Pieces, Sheet
 from rectbench.types import FloatArray
 from rectbench.warps.jacobians import LogStretches
+from tests.rigs_for_tests import rig
 
 RIG = rb.load_rig("sony-as200v").scaled(1 / 3)
 HONEST = "abraham"
@@ -327,6 +329,20 @@ def test_honest_methods_agree_with_themselves(method: str, name: str, width: int
     check_agreement(rect, Delivered.of(rect, ScoredView.of(pair)))
     small = rb.framed(rect, rb.Framing(focal_px=10.0))
     check_agreement(small, Delivered.of(small, ScoredView.of(pair)))
+
+
+def test_where_a_map_bends_its_derivative_is_that_of_a_side() -> None:
+    rect = rb.rectify(rig(), "multi-pinhole", pieces=2)
+    beta = rb.view_angles(rect.rig).beta
+    gamma, seam = np.linspace(-0.6, 0.6, 50), (beta.low + beta.high) / 2
+    rays = np.stack([np.sin(gamma), np.cos(gamma) * np.sin(seam), np.cos(gamma) * np.cos(seam)], axis=-1)
+    on_seam, _ = rect.left.source.project(rays @ rect.R_rect_left)
+    pixels = np.add(on_seam, [0.0, 1e-3])  # nearer to the seam than an arm
+    stated = rect.left.jacobian(pixels)
+    _, across_it = differences(rect.left, pixels, 5e-3)
+    assert np.abs(stated - across_it).max() > 0.1
+    assert off_derivative(rect.left, pixels, stated, 5e-3).max() < 1e-4
+    assert off_derivative(rect.left, pixels, 1.02 * stated, 5e-3).min(axis=0).max() > 5e-3
 
 
 def test_the_same_rectification_is_judged_alike_twice() -> None:

@@ -56,7 +56,9 @@ def test_a_vertical_rig_is_rectified_too(method: str) -> None:
     assert errors["row_error_matches"] > 40
 
 
-@pytest.mark.parametrize("method", [name for name in WITH_SCAN_LINES if name in ANY_LENS])
+@pytest.mark.parametrize(
+    "method", ["spherical", "psph", "cylinder", "multi-pinhole", "stereographic-circles"]
+)
 def test_a_rig_that_sees_its_epipoles_is_rectified_but_for_what_is_about_them(method: str) -> None:
     forward = rig(centre_m=(0.02, 0.0, 0.3))
     _, px_left, px_right = points_before(forward, 400)

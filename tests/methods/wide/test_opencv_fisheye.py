@@ -36,6 +36,11 @@ def test_its_tables_are_those_of_opencv(name: str, balance: float) -> None:
             np.testing.assert_allclose(our[seen], their[seen], atol=2e-3)
 
 
+def test_lenses_that_are_too_wide_for_opencv_are_refused() -> None:
+    with pytest.raises(rb.Unsupported, match=r"the lens is too wide"):
+        rb.rectify(rb.load_rig("lens-220").scaled(0.25), "opencv-fisheye")
+
+
 def test_lenses_and_sizes_that_opencv_does_not_take_are_refused() -> None:
     with pytest.raises(rb.Unsupported, match="this one is double-sphere"):
         rb.rectify(rig("double-sphere"), "opencv-fisheye")
