@@ -219,8 +219,9 @@ def relative_pose(
 
     RANSAC over five-point samples, or another search of `SEARCHES`, bundle adjustment over the consensus, and
     the tests that tell a pose from an accident. `threshold_px` is a Sampson distance in source pixels beyond
-    which a match is wrong; below, the noise is measured. The order of the matches means nothing. Raises InvalidInput
-    for arrays that are no matches; UnknownName for a search that there is not; PoseNotFound with the reason.
+    which a match is wrong; below, the noise is measured. The order of the matches means nothing. Raises
+    InvalidInput for arrays that are no matches; UnknownName for a search that there is not; PoseNotFound
+    with the reason.
     """
     if search not in SEARCHES:
         raise UnknownName("search", str(search), SEARCHES)
