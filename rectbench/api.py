@@ -187,6 +187,7 @@ def estimate_pose(
     ratio: float = RATIO,
     farthest: float | None = None,
     working_pixels: float | None = POSE_PIXELS,
+    search: str = "ransac",
     seed: int = 0,
 ) -> PoseEstimate:
     """How the right camera stands to the left one as two photographs show it.
@@ -200,6 +201,9 @@ def estimate_pose(
     ratio, farthest : a match must be nearer than the second best by this factor, and its descriptor
         no farther than this; see `match_features`.
     working_pixels : a larger image is made as small before features are sought; None leaves it.
+    search : for the pose that matches agree on: `ransac`, from random samples of five; `inlier-set`, the one
+        that most of 60 of them agree on, of all whose rotation is within 30° of none, by branch and bound:
+        some ten seconds (Yang, Li and Jia 2014).
     seed : of the random samples; the same seed gives the same pose to the last bit.
 
     Returns the pose, with its covariance and the matches it explains; its `note` says where it
@@ -216,7 +220,12 @@ def estimate_pose(
     rectbench.errors.InvalidInput: ratio is 0; expected a number above 0
     """
     settings = PoseSettings(
-        detector=detector, ratio=ratio, farthest=farthest, working_pixels=working_pixels, seed=seed
+        detector=detector,
+        ratio=ratio,
+        farthest=farthest,
+        working_pixels=working_pixels,
+        search=search,
+        seed=seed,
     )
     return estimate_rig_pose(images, checked_rig(rig), settings)
 

@@ -139,6 +139,10 @@ class PoseSettings(Request):
     )
     farthest: Positive | None = word("No match's descriptors are farther apart than this.")
     working_pixels: Positive | None = word("A larger image is made as small before features are sought.")
+    search: Text = word(
+        "For what matches agree on: ransac, or inlier-set, the best there is within 30° of no turn.",
+        default="ransac",
+    )
     seed: Seed = word("Of the random samples.", default=0)
 
 

@@ -6,7 +6,7 @@ on rays throughout, so that a lens may see 180 degrees and more.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from time import perf_counter
 from types import MappingProxyType
@@ -18,7 +18,7 @@ from scipy.spatial.transform import Rotation
 from scipy.special import ndtr, stdtrit
 
 from rectbench.cameras import Camera
-from rectbench.errors import InvalidInput, PoseNotFound
+from rectbench.errors import InvalidInput, PoseNotFound, UnknownName
 from rectbench.matching.features.matches import RATIO, match_features
 from rectbench.matching.pose.bundle import PARAMETERS, adjusted
 from rectbench.matching.pose.epipolar import (
@@ -37,6 +37,7 @@ from rectbench.matching.pose.evidence import (
     refuse_pure_rotation,
     refuse_same_place,
 )
+from rectbench.matching.pose.inlier_set import agreed_by_most
 from rectbench.matching.pose.robust import consensus, deviation, locally_optimised
 from rectbench.rigs import Rig
 from rectbench.rigs.covariance import RigCovariance
@@ -60,6 +61,12 @@ CONTRADICTING_DEG = 30.0
 """No calibration is off by so much."""
 FORWARD_DEG = 45.0
 """A baseline nearer to the optical axes than this is a forward motion."""
+USUAL_SEARCH = "ransac"
+SEARCHES: Mapping[str, Callable[[RayMatches, float, int], Pose]] = {
+    USUAL_SEARCH: consensus,
+    "inlier-set": agreed_by_most,
+}
+"""Ways to the pose that matches agree on, by name: five-point samples, or branch and bound over all poses."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -163,6 +170,7 @@ def pose_from_images(
     ratio: float = RATIO,
     farthest: float | None = None,
     working_pixels: float | None = POSE_PIXELS,
+    search: str = USUAL_SEARCH,
     seed: int = 0,
 ) -> PoseEstimate:
     """The pose from two photographs, see `match_features` and `relative_pose`.
@@ -193,27 +201,37 @@ def pose_from_images(
     area = max(left.width * left.height, right.width * right.height)
     reduction = 1.0 if working_pixels is None else max(1.0, np.sqrt(area / working_pixels))
     refuse_same_place(matches, reduction)
-    found = relative_pose(left, right, matches, threshold_px=THRESHOLD_PX * reduction, seed=seed)
+    threshold_px = THRESHOLD_PX * reduction
+    found = relative_pose(left, right, matches, threshold_px=threshold_px, search=search, seed=seed)
     return replace(found, seconds=MappingProxyType({"features": features_s, **found.seconds}))
 
 
 def relative_pose(
-    left: Camera, right: Camera, matches: Matches, *, threshold_px: float = THRESHOLD_PX, seed: int = 0
+    left: Camera,
+    right: Camera,
+    matches: Matches,
+    *,
+    threshold_px: float = THRESHOLD_PX,
+    search: str = USUAL_SEARCH,
+    seed: int = 0,
 ) -> PoseEstimate:
     """The pose from matched pixels [N, 2] each, gross outliers among them.
 
-    RANSAC over five-point samples, bundle adjustment over the consensus, and the tests that tell a
-    pose from an accident. `threshold_px` is a Sampson distance in source pixels beyond which a match
-    is wrong; below, the noise is measured. The order of the matches means nothing. Raises InvalidInput
-    for arrays that are no matches; PoseNotFound with the reason.
+    RANSAC over five-point samples, or another search of `SEARCHES`, bundle adjustment over the consensus, and
+    the tests that tell a pose from an accident. `threshold_px` is a Sampson distance in source pixels beyond
+    which a match is wrong; below, the noise is measured. The order of the matches means nothing. Raises
+    InvalidInput for arrays that are no matches; UnknownName for a search that there is not; PoseNotFound
+    with the reason.
     """
+    if search not in SEARCHES:
+        raise UnknownName("search", str(search), SEARCHES)
     shapes = [np.shape(pixels) for pixels in matches]
     if shapes[0] != shapes[1] or len(shapes[0]) != 2 or shapes[0][1] != 2:
         raise InvalidInput(f"matches of shapes {shapes[0]} and {shapes[1]}; expected the same [N, 2] twice")
     start, given = perf_counter(), len(matches.left)
     seen, _ = RayMatches.of(left, right, matches)
     _refuse_few(len(seen), given)
-    pose, limit_px = _narrowed(consensus(seen, threshold_px, seed), seen, threshold_px)
+    pose, limit_px = _narrowed(SEARCHES[search](seen, threshold_px, seed), seen, threshold_px)
     refuse_chance(pose, seen, limit_px, seed)
     fitting = seen[np.abs(sampson_px(seen.terms(), essential(pose))[0]) <= limit_px]
     pose = max(decomposed(essential(pose)), key=lambda one: int(in_front(one, fitting, limit_px).sum()))
