@@ -38,10 +38,17 @@ class MrcalFrame(NamedTuple):
         return cls(R_rect_left, R_rect_left @ rig.R_right_left.T, azimuth)
 
     def px_per_rad(self, camera: rb.Camera) -> tuple[float, float]:
-        """Pixels a radian of γ and of β in the first camera's image, in the middle of the rectified view."""
+        """Pixels a radian of γ and of β in the first camera's image, in the middle of the rectified view.
+
+        Raises Unsupported where that camera does not see it.
+        """
         sin, cos = np.sin(self.azimuth), np.cos(self.azimuth)
         by_ray = camera.whole.project_jacobian(self.R_rect_left.T @ [sin, 0, cos]) @ self.R_rect_left.T
         along, across = np.linalg.norm(by_ray @ np.array([[cos, 0, -sin], [0, cos, 0]]).T, axis=0)
+        if not np.isfinite([along, across]).all():
+            raise rb.Unsupported(
+                "the first camera does not see the middle of both views, where mrcal takes its resolution"
+            )
         return float(along), float(across)
 
     def fields_of_view(

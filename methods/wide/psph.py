@@ -1,4 +1,4 @@
-"""JPL's planospheric model (PSPH), which its rovers' fisheye stereo is searched in."""
+"""JPL's planospheric model (PSPH), made for searching pairs of fisheye images along rows."""
 
 import numpy as np
 

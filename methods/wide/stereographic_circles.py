@@ -7,6 +7,9 @@ import rectbench as rb
 
 from ._frames import held
 
+OUTER_RAYS, LEFT_OUT = 24, 1e-10
+"""Rays of the first cap; and by how much a ray may be farther off than those, cosines."""
+
 
 class Options(rb.Options):
     focal_px: float | None = rb.option(
@@ -54,9 +57,20 @@ class StereographicCircles(rb.Rectifier[Options]):
 def minimax_location(rays: np.ndarray) -> np.ndarray:
     """The unit vector [3] whose greatest angle to rays [N, 3] is least: the middle of their smallest cap.
 
-    The greatest t with c·r ≥ t for all rays, |c| = 1.
+    That of the rays farthest from their mean, and of each that it leaves out, until there is none.
     """
-    start = rays.mean(axis=0) / np.linalg.norm(rays.mean(axis=0))
+    middle = rays.mean(axis=0) / np.linalg.norm(rays.mean(axis=0))
+    outer = rays[np.argsort(rays @ middle)[:OUTER_RAYS]]
+    while True:
+        middle = middle_of_cap(outer, middle)
+        farthest = rays[(rays @ middle).argmin()]
+        if farthest @ middle >= (outer @ middle).min() - LEFT_OUT:
+            return middle
+        outer = np.vstack([outer, farthest])
+
+
+def middle_of_cap(rays: np.ndarray, start: np.ndarray) -> np.ndarray:
+    """The unit vector c [3] of the greatest t with c·r ≥ t for all of some rays [K, 3]."""
     nearer = LinearConstraint(np.column_stack([rays, -np.ones(len(rays))]), 0.0, np.inf)
     unit = NonlinearConstraint(lambda x: x[:3] @ x[:3], 1.0, 1.0, jac=lambda x: 2 * np.append(x[:3], 0.0))
     found = minimize(  # type: ignore[call-overload]  # its stubs know constraints of one number
@@ -67,8 +81,8 @@ def minimax_location(rays: np.ndarray) -> np.ndarray:
         constraints=[nearer, unit],
         options={"ftol": 1e-12},
     )
-    location: np.ndarray = found.x[:3] / np.linalg.norm(found.x[:3])
-    return location
+    middle: np.ndarray = found.x[:3] / np.linalg.norm(found.x[:3])
+    return middle
 
 
 def facing(direction: np.ndarray) -> np.ndarray:

@@ -68,6 +68,19 @@ def test_a_rig_that_sees_its_epipoles_is_rectified_but_for_what_is_about_them(me
     assert errors["row_error_matches"] > 20
 
 
+@pytest.mark.parametrize("right_first", [False, True])
+@pytest.mark.parametrize("method", [name for name in WITH_SCAN_LINES if name != "stereographic-circles"])
+def test_disparities_are_depths(method: str, right_first: bool) -> None:
+    pair = rig(LENS.get(method, "kannala-brandt"), centre_m=(-0.12 if right_first else 0.12, 0.006, -0.004))
+    rect = rb.rectify(pair, method)
+    points, px_left, px_right = points_before(pair)
+    left, right = rect.left.forward(px_left), rect.right.forward(px_right)
+    both = np.isfinite(left + right).all(axis=1)
+    assert both.sum() > 50
+    found = rect.triangulate(left[both], left[both, 0] - right[both, 0])
+    np.testing.assert_allclose(found, points[both], rtol=1e-6)
+
+
 def test_controls_have_no_distortion_at_equal_view_and_say_why() -> None:
     pair = rb.load_rig("mynteye").scaled(0.25)
     choice = rb.best_method(pair, methods=["equirectangular", "stereographic-circles", "abraham"])

@@ -110,6 +110,16 @@ def test_without_a_stated_field_of_view_it_takes_what_both_lenses_see(method: st
 
 
 @pytest.mark.parametrize("method", METHODS)
+def test_a_first_camera_that_does_not_see_the_middle_tells_no_resolution(method: str) -> None:
+    params = {"fx": 120, "fy": 120, "cx": 150, "cy": 150}
+    narrow, wide = (rb.Camera("equidistant", (400, 300), params, angle) for angle in (30.0, 89.0))
+    apart = Rotation.from_rotvec([0.0, -np.radians(80), 0.0]).as_matrix()
+    pair = rb.Rig(narrow, wide, apart, -apart @ np.array([0.0, 0.2, 0.0]))
+    with pytest.raises(rb.Unsupported, match="does not see the middle"):
+        rb.rectify(pair, method)
+
+
+@pytest.mark.parametrize("method", METHODS)
 def test_cameras_in_a_row_have_no_frame(method: str) -> None:
     lens = rig().left
     with pytest.raises(rb.Unsupported, match=r"look 0\.0° off the baseline"):

@@ -46,12 +46,15 @@ def test_its_tables_are_those_of_opencv(name: str, mode: str) -> None:
 def test_two_of_its_modes_have_epipolar_rows(mode: str) -> None:
     pair = rig("unified", centre_m=(0.1, 0.01, -0.02))
     _, px_left, px_right = points_before(pair, 400)
-    errors = rb.metrics.row_error(rb.rectify(pair, "opencv-omnidir", mode=mode), px_left, px_right).columns()
+    rect = rb.rectify(pair, "opencv-omnidir", mode=mode)
+    errors = rb.metrics.row_error(rect, px_left, px_right).columns()
     assert errors["row_error_matches"] > 50
     if mode in ("perspective", "longlati"):
         assert errors["row_error_max_px"] < 1e-6
     else:
         assert errors["row_error_median_px"] > 0.5
+        found = rb.metrics.row_misfit(rect, rb.Delivered.of(rect, rb.ScoredView.of(pair)), pair)
+        assert "rows are bent by" in found.reason
 
 
 def test_other_lenses_and_a_baseline_along_the_axis_are_refused() -> None:
