@@ -19,8 +19,9 @@ LEAST_KEPT = 100
 """Scored pixels; fewer are all rim."""
 HELD_SHARE = 0.95
 """The pieces of a table hold as much of the view as its pixels say, but for rims;"""
-RIM_FACTORS = (4, 16, 64)
-"""where rims are broad, as of a lens squeezed into a corner of its image, so many times as many are taken."""
+CLOSER = (4, 16, 64)
+"""where rims are broad, as of a lens squeezed into a corner of its image, so many times as many are
+looked at."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,11 +50,11 @@ class DeliveredSide:
         shown = mapped.copy()
         shown[mapped] = pieces.hold(scored.pixels[mapped], px_rect[mapped])
         found = cls(scored, px_rect, mapped, shown, delivered, pieces)
-        for factor in RIM_FACTORS:
+        for fewest in (factor * FEWEST_PIECES for factor in CLOSER):
             looked_at = found.pieces
             if found.held >= HELD_SHARE or looked_at.count < FEWEST_PIECES or looked_at.folded.any():
                 break
-            found = replace(found, pieces=Pieces.of(delivered, factor * FEWEST_PIECES))
+            found = replace(found, pieces=Pieces.of(delivered, fewest))
         return found
 
     @property

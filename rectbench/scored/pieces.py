@@ -29,6 +29,8 @@ same map is looked at. The log distortion of 95 % of the view is then right to a
 where the view goes up to the epipoles and a map squeezes its outermost rows."""
 LARGEST_TABLE = 2_000_000
 """Entries of a table that is made for this alone."""
+SLIVER = 0.01
+"""A quad whose area is less than this share of its longer diagonal's square is one."""
 LARGE_SHARE = 1 / 8
 """Of the image's side; pieces are a tenth as large."""
 ROUNDING_PX = 0.1
@@ -230,9 +232,21 @@ def _shows(quads: Sequence[FloatArray], known: BoolArray, sheet: Sheet) -> BoolA
     _drop_far_sides(shows, quads, known, camera)
     rim = shows & ~known.all(axis=0)
     at_rim = [corner[:, rim] for corner in quads]
-    # Guesses a few hundredths of a pixel off fold slivers that have hardly any area.
+    # A guess that is a little off folds quads with hardly an area.
     shows[rim] = camera.unproject(np.mean(at_rim, axis=0).T)[1] & (_areas(at_rim) > 0)
+    _drop_bent_slivers(shows, quads)
     return shows
+
+
+def _drop_bent_slivers(shows: BoolArray, quads: Sequence[FloatArray]) -> None:
+    """Mark quads with hardly an area that seem folded: where a domain ends, and rows follow its bent edge.
+
+    There a side bends by more than such a quad is wide.
+    """
+    shown = [corner[:, shows] for corner in quads]
+    areas = _areas(shown)
+    longest = np.maximum(*(np.sum((end - start) ** 2, axis=0) for start, end in (shown[::3], shown[1:3])))
+    shows[shows] = (areas > 0) | (areas <= -SLIVER * longest)
 
 
 def _areas(quads: Sequence[FloatArray]) -> FloatArray:
