@@ -29,8 +29,8 @@ same map is looked at. The log distortion of 95 % of the view is then right to a
 where the view goes up to the epipoles and a map squeezes its outermost rows."""
 LARGEST_TABLE = 2_000_000
 """Entries of a table that is made for this alone."""
-SLIVER = 0.01
-"""A quad whose area is less than this share of its longer diagonal's square is one."""
+RIM_QUADS = 3
+"""Quads from one of which not all corners are known to those that the rim does not bend."""
 LARGE_SHARE = 1 / 8
 """Of the image's side; pieces are a tenth as large."""
 ROUNDING_PX = 0.1
@@ -231,22 +231,21 @@ def _shows(quads: Sequence[FloatArray], known: BoolArray, sheet: Sheet) -> BoolA
         shows: BoolArray = np.all((high > -0.5) & (low < np.array(camera.size)[:, None, None] - 0.5), axis=0)
     _drop_far_sides(shows, quads, known, camera)
     rim = shows & ~known.all(axis=0)
-    at_rim = [corner[:, rim] for corner in quads]
-    # A guess that is a little off folds quads with hardly an area.
-    shows[rim] = camera.unproject(np.mean(at_rim, axis=0).T)[1] & (_areas(at_rim) > 0)
-    _drop_bent_slivers(shows, quads)
+    shows[rim] = camera.unproject(np.mean([corner[:, rim] for corner in quads], axis=0).T)[1]
+    if rim.any():
+        _drop_bent(shows, quads, known)
     return shows
 
 
-def _drop_bent_slivers(shows: BoolArray, quads: Sequence[FloatArray]) -> None:
-    """Mark quads with hardly an area that seem folded: where a domain ends, and rows follow its bent edge.
+def _drop_bent(shows: BoolArray, quads: Sequence[FloatArray], known: BoolArray) -> None:
+    """Mark quads that seem folded where the lens ends: they tell of its rim, not of the map.
 
-    There a side bends by more than such a quad is wide.
+    Its rim bends by more than a quad there is wide, and by more than a corner that is guessed is off. Whether
+    the map itself is folded is looked at place by place (`check_agreement`).
     """
-    shown = [corner[:, shows] for corner in quads]
-    areas = _areas(shown)
-    longest = np.maximum(*(np.sum((end - start) ** 2, axis=0) for start, end in (shown[::3], shown[1:3])))
-    shows[shows] = (areas > 0) | (areas <= -SLIVER * longest)
+    rim = (~known.all(axis=0)).astype(np.uint8)
+    at_rim = shows & (cv2.dilate(rim, np.ones((3, 3), np.uint8), iterations=RIM_QUADS) > 0)
+    shows[at_rim] = _areas([corner[:, at_rim] for corner in quads]) > 0
 
 
 def _areas(quads: Sequence[FloatArray]) -> FloatArray:

@@ -242,7 +242,7 @@ FOUND_OUT = {
     discs_at_some_scored_pixels: "the map is folded or mirrored|is not x, near pixel",
     false_jacobian: "the stated jacobian is not the derivative of forward, near pixel",
     folded: "the left lookup table shows something else at",
-    other_tables: "the lookup table is not the inverse map, near pixel",
+    other_tables: "lookup table is (folded or mirrored|not the inverse map), near pixel",
     other_corners: "the left lookup table",
     other_inverse: r"inverse\(forward\(x\)\) is not x, near pixel",
     mirrored: "the left lookup table is folded or mirrored, near pixel",
