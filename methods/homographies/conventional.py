@@ -51,7 +51,14 @@ class Conventional(rb.Rectifier[Options]):
                 f"focal={options.focal} gives f = {focal:.3g} px where the source has "
                 f"{rb.centre_resolution_px(rig):.0f}: the lens is too wide for it"
             )
-        return self.at_focal(rig, focal, size)
+        found = self.at_focal(rig, focal, size)
+        for warp in (found.left, found.right):
+            if not shows_any(warp, size):
+                raise rb.Unsupported(
+                    f"of one of the views nothing lies on a perspective image of {size[0]}x{size[1]} px at "
+                    f"f = {focal:.0f} px: the cameras look apart"
+                )
+        return found
 
     def at_focal(self, rig: rb.Rig, focal: float, size: tuple[int, int]) -> rb.Rectification:
         """The perspective rectification of one focal length, what is in front in the middle."""
@@ -87,3 +94,9 @@ class Conventional(rb.Rectifier[Options]):
             on_rim = (np.abs(pixels + 0.5) % np.array(warp.source.size) == 0).any(axis=1)
             filling.append(1 / reach[on_rim].min())
         return balance * min(holding) + (1 - balance) * max(filling)
+
+
+def shows_any(warp: rb.Warp, size: tuple[int, int]) -> bool:
+    """Whether any pixel of the source lies on the rectified image."""
+    pixels = warp.forward(rb.evaluation_pixels(warp.source))
+    return bool(((pixels >= -0.5) & (pixels <= np.array(size) - 0.5)).all(axis=1).any())

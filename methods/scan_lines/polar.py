@@ -31,6 +31,14 @@ class Polar(rb.Rectifier[Options]):
     )
 
     def fit(self, problem: rb.Problem, options: Options) -> rb.Rectification:
+        """Raises Unsupported where keeping every pixel takes a larger image than there can be."""
+        try:
+            return self.lossless(problem, options)
+        except rb.InvalidInput as reason:
+            raise rb.Unsupported(f"to lose no source pixel, {reason}") from None
+
+    def lossless(self, problem: rb.Problem, options: Options) -> rb.Rectification:
+        """On planes or spheres, as the options and the lenses say."""
         planes = EpipolarPlanes.of(problem) if options.form != "spherical" else None
         if planes:
             beta = planes.beta()

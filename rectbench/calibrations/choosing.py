@@ -5,7 +5,7 @@ The question lists the pairs that the file could make, those that see most in co
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from itertools import combinations
 
 import numpy as np
@@ -33,7 +33,12 @@ Pair = tuple[str, str]
 
 
 class CamerasNotChosen(InvalidInput):
-    """A file of more than two cameras of which nobody said which two; `names` are theirs, in its order."""
+    """A file of more than two cameras of which nobody said which two; `names` are theirs, in its order.
+
+    Its first line proposes the pair that sees the most in common; one a pair follows.
+    """
+
+    has_lines = True
 
     def __init__(self, message: str, names: Sequence[str]) -> None:
         super().__init__(message)
@@ -55,17 +60,21 @@ def chosen(
     if len(names) < 2:
         raise InvalidInput(f"{file}: holds {len(names)} cameras; expected two at least")
     if given.cameras is None and len(names) > 2:
-        pairs = list(_pairs(names, rig_of)) if rig_of else []
+        pairs = _pairs(names, rig_of) if rig_of else {}
         known = ", ".join(shown(name) for name in names[:MAX_NAMES])
         found = f"{file}: holds {len(names)} cameras"
         expected = f"`{argument('cameras')}` with two of them"
-        raise CamerasNotChosen(f"{found}; expected {expected}: {'; '.join(pairs) or known}", names)
+        best = next(
+            (f", such as {','.join(pair)}, which see the most in common" for pair in pairs), f": {known}"
+        )
+        lines = [f"{','.join(pair)}: {told}" for pair, told in pairs.items()]
+        raise CamerasNotChosen("\n".join([f"{found}; expected {expected}{best}", *lines]), names)
     return given.cameras or (names[0], names[1])
 
 
-def _pairs(names: Sequence[str], rig_of: Callable[[Pair], Rig]) -> Iterator[str]:
+def _pairs(names: Sequence[str], rig_of: Callable[[Pair], Rig]) -> dict[Pair, str]:
     """The pairs that make rigs, those that see most in common first, each with its baseline and overlap."""
-    found: list[tuple[float, str]] = []
+    found: list[tuple[float, Pair, str]] = []
     for left, right in combinations(names[:MAX_CAMERAS], 2):
         try:
             rig = rig_of((left, right))
@@ -75,8 +84,8 @@ def _pairs(names: Sequence[str], rig_of: Callable[[Pair], Rig]) -> Iterator[str]
             left, right = right, left
         share = overlap(rig)
         told = f"baseline {rig.baseline_m:.3g} m, {100 * share:.0f} % of the view in common"
-        found.append((-share, f"{left},{right} ({told})"))
-    yield from (text for _, text in sorted(found)[:MAX_PAIRS])
+        found.append((-share, (left, right), told))
+    return {pair: told for _, pair, told in sorted(found)[:MAX_PAIRS]}
 
 
 def overlap(rig: Rig) -> float:

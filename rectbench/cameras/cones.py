@@ -56,19 +56,26 @@ class Cones:
         """The numbers of `holds`: the axis, and the squared cosine of the angle."""
         return {"axis": self.axis, "square": math.cos(math.radians(self.within_deg)) ** 2}
 
-    def rings(self, off_rad: FloatArray, count: int) -> FloatArray:
-        """Unit rays [N, 3] at angles [K], radians, from the axis and from its opposite, so many at each."""
+    def directions(self, off_rad: FloatArray, turn_rad: FloatArray) -> FloatArray:
+        """Unit rays [..., 3] at angles from the axis, and so far about it, radians."""
         x = np.array(self.axis)
         y = np.cross(x, np.eye(3)[np.abs(x).argmin()])
         y /= np.linalg.norm(y)
-        off, turn = off_rad[:, None, None], 2 * np.pi * np.arange(count)[:, None] / count
+        off, turn = off_rad[..., None], turn_rad[..., None]
         about = np.cos(turn) * y + np.sin(turn) * np.cross(x, y)
-        rays = (np.cos(off) * x + np.sin(off) * about).reshape(-1, 3)
-        return np.concatenate([rays, -rays])
+        rays: FloatArray = np.cos(off) * x + np.sin(off) * about
+        return rays
+
+    def rim(self, turn_rad: FloatArray) -> FloatArray:
+        """Unit rays [..., 3] where the cone about the axis ends, so far about it, radians."""
+        return self.directions(np.array(math.radians(self.within_deg)), turn_rad)
 
     def rays(self) -> FloatArray:
         """Unit rays [N, 3] all over both cones, their axis and their rims among them."""
-        return self.rings(np.linspace(0.0, math.radians(self.within_deg), RINGS + 1), RING_RAYS)
+        off = np.linspace(0.0, math.radians(self.within_deg), RINGS + 1)
+        turn = 2 * np.pi * np.arange(RING_RAYS) / RING_RAYS
+        rays = self.directions(off[:, None], turn).reshape(-1, 3)
+        return np.concatenate([rays, -rays])
 
     def hold(self, rays: FloatArray) -> Any:
         """Mask [...] of the unit rays [..., 3] that lie in the cones."""

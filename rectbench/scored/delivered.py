@@ -3,17 +3,25 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 
-from rectbench.scored.pieces import Pieces, Sheet
+from rectbench.scored.pieces import FEWEST_PIECES, Pieces, Sheet
 from rectbench.scored.view import SHARES, ScoredPixels, ScoredView
 from rectbench.types import BoolArray, FloatArray
 from rectbench.warps.jacobians import Jacobians, LogStretches
 from rectbench.warps.lookup.resampling import SIDES, Side
 from rectbench.warps.rectification import Rectification, in_frame
+
+LEAST_KEPT = 100
+"""Scored pixels; fewer are all rim."""
+HELD_SHARE = 0.95
+"""The pieces of a table hold as much of the view as its pixels say, but for rims;"""
+CLOSER = (4, 16, 64)
+"""where rims are broad, as of a lens squeezed into a corner of its image, so many times as many are
+looked at."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,12 +49,26 @@ class DeliveredSide:
         pieces, mapped = Pieces.of(delivered), in_frame(px_rect, rect.size)
         shown = mapped.copy()
         shown[mapped] = pieces.hold(scored.pixels[mapped], px_rect[mapped])
-        return cls(scored, px_rect, mapped, shown, delivered, pieces)
+        found = cls(scored, px_rect, mapped, shown, delivered, pieces)
+        for fewest in (factor * FEWEST_PIECES for factor in CLOSER):
+            looked_at = found.pieces
+            if found.held >= HELD_SHARE or looked_at.count < FEWEST_PIECES or looked_at.folded.any():
+                break
+            found = replace(found, pieces=Pieces.of(delivered, fewest))
+        return found
 
     @property
     def kept(self) -> int:
         """How many of the scored pixels, from the middle outwards, are shown before one is not."""
         return len(self.shown) if self.shown.all() else int(self.shown.argmin())
+
+    @cached_property
+    def held(self) -> float:
+        """What the pieces hold of the view that is kept, as a share of that; of too little of it, all."""
+        if self.kept < LEAST_KEPT:
+            return 1.0
+        kept = self.kept / len(self.shown)
+        return float(self.shares(kept).sum()) / kept
 
     def shares(self, share: float) -> FloatArray:
         """[M], what each piece holds of A_s, as shares of the view: in all s, where all of it is shown."""

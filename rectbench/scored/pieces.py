@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from itertools import pairwise
 
 import cv2
@@ -22,13 +23,14 @@ from rectbench.warps.lookup.tables import OUTSIDE, Table, lookup_table
 from rectbench.warps.targets import Framed
 from rectbench.warps.warp import Warp
 
-PIECES = 12_000
-"""In a frame, about. The log distortion of 95 % of the view is then right to a thousandth; to a hundredth
-where the view goes up to the epipoles and a map squeezes its outermost rows."""
 FEWEST_PIECES = 6_000
-"""In the source image; where a table has fewer, a finer one of the same map is looked at."""
+"""In the source image, of about twice as many in the frame; where a table has fewer, a finer one of the
+same map is looked at. The log distortion of 95 % of the view is then right to a thousandth; to a hundredth
+where the view goes up to the epipoles and a map squeezes its outermost rows."""
 LARGEST_TABLE = 2_000_000
 """Entries of a table that is made for this alone."""
+RIM_QUADS = 3
+"""Quads from one of which not all corners are known to those that the rim does not bend."""
 LARGE_SHARE = 1 / 8
 """Of the image's side; pieces are a tenth as large."""
 ROUNDING_PX = 0.1
@@ -103,14 +105,14 @@ class Pieces:
     """[M, 2, 2], d(rectified)/d(source), the mean over the piece, in the frame that is delivered."""
 
     @classmethod
-    def of(cls, delivered: Sheet) -> Pieces:
-        """Those of a table, or of a finer one: `FEWEST_PIECES` or more that show the source, if feasible."""
-        entries, found = math.prod(delivered.size), cls.between(delivered, PIECES)
-        if found.count < FEWEST_PIECES < entries:
-            wanted = 2 * PIECES * FEWEST_PIECES / max(1, found.count)
+    def of(cls, delivered: Sheet, fewest: int = FEWEST_PIECES) -> Pieces:
+        """Those of a table, or of a finer one: about twice the `fewest` that show the source, if feasible."""
+        entries, found = math.prod(delivered.size), cls.between(delivered, 2 * fewest)
+        if found.count < fewest < entries:
+            wanted = 4 * fewest**2 / max(1, found.count)
             found = cls.between(delivered, min(wanted, entries, LARGEST_TABLE))
-        if found.are_few:
-            finer = delivered.finer(2 * entries * FEWEST_PIECES / found.count)
+        if 0 < found.count < fewest:
+            finer = delivered.finer(2 * entries * fewest / found.count)
             found = cls.between(finer, min(LARGEST_TABLE, math.prod(finer.size)))
         return found
 
@@ -132,7 +134,7 @@ class Pieces:
         across = (top_right - top_left + low_right - low_left) / 2
         down = (low_left - top_left + low_right - top_right) / 2
         middles, halves = (top_left + top_right + low_left + low_right) / 4, (abs(across) + abs(down)) / 2
-        areas = across[0] * down[1] - across[1] * down[0]
+        areas = _areas((top_left, top_right, low_left, low_right))
         steps = np.stack(np.meshgrid(np.diff(columns) / sheet.scale[0], np.diff(rows) / sheet.scale[1]))
         with np.errstate(divide="ignore", invalid="ignore"):
             J = np.array([[down[1], -down[0]], [-across[1], across[0]]]) / areas * steps[:, None, shows]
@@ -147,9 +149,9 @@ class Pieces:
         return len(self.areas_px)
 
     @property
-    def are_few(self) -> bool:
-        """Whether there are some, and too few to tell how the map changes from one to the next."""
-        return 0 < self.count < FEWEST_PIECES
+    def folded(self) -> BoolArray:
+        """Mask [M] of those that are folded or mirrored, or have no area."""
+        return ~(self.areas_px > 0)
 
     def at(self, px_rect: FloatArray) -> NDArray[np.intp]:
         """The pieces [K] at pixels [K, 2] of the sheet; -1 where there is none."""
@@ -170,7 +172,7 @@ class Pieces:
             return held
         place = self.sheet.place(px_rect)
         pieces = self._nearest(place)
-        step_px = (2 * self.halves[:, pieces] / self._entries_across[:, pieces]).T
+        step_px = (2 * self.halves[:, pieces] / self.entries_across[:, pieces]).T
         nearest = np.rint(place).astype(np.intp)
         held |= self._has_near(pixels, nearest, step_px + ROUNDING_PX)
         for offset in np.ndindex(5, 5):  # beside the rim of what the lens sees entries are missing
@@ -181,8 +183,8 @@ class Pieces:
             held[left] = self._has_near(pixels[left], nearest[left] + np.array(offset) - 2, within_px)
         return held
 
-    @property
-    def _entries_across(self) -> NDArray[np.intp]:
+    @cached_property
+    def entries_across(self) -> NDArray[np.intp]:
         """[2, M], how many entries each is wide and high."""
         steps = np.stack(np.meshgrid(np.diff(self.columns), np.diff(self.rows)))
         across: NDArray[np.intp] = steps[:, self.numbers >= 0]
@@ -230,7 +232,28 @@ def _shows(quads: Sequence[FloatArray], known: BoolArray, sheet: Sheet) -> BoolA
     _drop_far_sides(shows, quads, known, camera)
     rim = shows & ~known.all(axis=0)
     shows[rim] = camera.unproject(np.mean([corner[:, rim] for corner in quads], axis=0).T)[1]
+    if rim.any():
+        _drop_bent(shows, quads, known)
     return shows
+
+
+def _drop_bent(shows: BoolArray, quads: Sequence[FloatArray], known: BoolArray) -> None:
+    """Mark quads that seem folded where the lens ends: they tell of its rim, not of the map.
+
+    Its rim bends by more than a quad there is wide, and by more than a corner that is guessed is off. Whether
+    the map itself is folded is looked at place by place (`check_agreement`).
+    """
+    rim = (~known.all(axis=0)).astype(np.uint8)
+    at_rim = shows & (cv2.dilate(rim, np.ones((3, 3), np.uint8), iterations=RIM_QUADS) > 0)
+    shows[at_rim] = _areas([corner[:, at_rim] for corner in quads]) > 0
+
+
+def _areas(quads: Sequence[FloatArray]) -> FloatArray:
+    """Of quads of these corners [2, ...] each: half the product of their diagonals."""
+    top_left, top_right, low_left, low_right = quads
+    falling, rising = low_right - top_left, low_left - top_right
+    areas: FloatArray = (falling[0] * rising[1] - falling[1] * rising[0]) / 2
+    return areas
 
 
 def _drop_far_sides(shows: BoolArray, quads: Sequence[FloatArray], known: BoolArray, camera: Camera) -> None:

@@ -44,12 +44,12 @@ class Rectification:
     >>> rig = rb.load_rig("t265")
     >>> rect = rb.rectify(rig, method="abraham")
     >>> rect.size
-    (804, 805)
+    (800, 800)
     >>> map_x, map_y = rect.maps("left")
     >>> map_x.shape
-    (805, 804)
+    (800, 800)
     >>> rect.triangulate([400.0, 300.0], 5.0).round(2)  # metres
-    array([-0.  , -1.29,  3.44])
+    array([ 0.02, -1.25,  3.45])
     """
 
     rig: Rig

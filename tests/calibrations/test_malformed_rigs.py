@@ -57,6 +57,11 @@ M1: !!opencv-matrix
         (b"\xff\xd8\xff\xe0 a picture", "is not text"),
         (b"cam0:\0", "is binary"),
         (b"hello", "is no calibration known here"),
+        (
+            b"# Title\n\nProse of a ZED's, [LEFT_CAM_HD], or: an ocam_model: both",
+            "is no calibration but text, ",
+        ),
+        (b"MIT License\n\nCopyright: nobody: here", "is no calibration but text, 'MIT License'; expected"),
         (b"x" * (5 << 20), "is larger than 4 MiB"),
         (b"cam0: " + b"[" * 2000, "is nested too deeply"),
         (b"cam0: " + b"[1]," * 50_000, "is no YAML"),

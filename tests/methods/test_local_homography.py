@@ -135,8 +135,8 @@ def test_a_model_is_at_its_least(law: str) -> None:
 
 
 def test_a_model_that_ends_before_the_view_is_refused_with_the_angle() -> None:
-    wide = aligned_rig(400, 400, 178, max_angle_deg=89.95)
-    with pytest.raises(rb.Unsupported, match=r"model=cylindrical ends at 90 degrees; the view reaches 90\.6"):
+    wide = aligned_rig(400, 400, 182, max_angle_deg=90.6)
+    with pytest.raises(rb.Unsupported, match=r"model=cylindrical ends at 90 degrees; the view reaches 94\.9"):
         rb.rectify(wide, model="cylindrical")
 
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 import rectbench as rb
 from tests.rigs_for_tests import aligned_rig, points_before, rig
@@ -169,3 +170,21 @@ def test_degenerate_matches_are_refused_at_once() -> None:
     same = np.full((30, 2), 150.0)
     with pytest.raises(rb.InvalidInput, match="same pixel or in one line"):
         rb.rectify(pair, method="hartley", matches=(same, same + 4))
+
+
+def test_a_perspective_image_between_narrow_cameras_far_apart_is_refused() -> None:
+    narrow = rb.Camera("equisolid", (357, 102), {"fx": 341, "fy": 346, "cx": 180, "cy": 50})
+    wide = rb.Camera("orthographic", (280, 388), {"fx": 144, "fy": 142, "cx": 144, "cy": 195}, 76.9)
+    turned = Rotation.from_rotvec([-1.247, -1.43, 0.392]).as_matrix()
+    with pytest.raises(
+        rb.Unsupported, match="of one of the views nothing lies on a perspective image of 357x"
+    ):
+        rb.rectify(rb.Rig(narrow, wide, turned, np.array([0.121, -0.123, 0.101])), method="conventional")
+
+
+def test_polar_says_where_no_image_is_large_enough_to_keep_every_pixel() -> None:
+    dot = rb.Camera("pinhole", (1590, 1200), {"fx": 1.6, "fy": 1.6, "cx": 794.5, "cy": 599.5}, 89.8)
+    lens = rb.Camera("equidistant", (145, 160), {"fx": 48, "fy": 48, "cx": 72.5, "cy": 82}, 85)
+    turned = Rotation.from_rotvec([-0.639, -0.099, -0.809]).as_matrix()
+    with pytest.raises(rb.Unsupported, match="to lose no source pixel, the rectified image would be"):
+        rb.rectify(rb.Rig(dot, lens, turned, np.array([-0.161, -0.05, -0.108])), method="polar")

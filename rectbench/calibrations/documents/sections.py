@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
@@ -18,12 +19,20 @@ from rectbench.errors import InvalidInput, UnknownName, argument
 from rectbench.rigs.rig import checked_rotation
 from rectbench.types import FloatArray
 
+OPENING = re.compile(r"""[%<{\[-]|["'\w./ -]+:(\s|$)""")
+"""How the first line of YAML, JSON or XML begins that is no comment."""
+
+EXPECTED = "expected one of those that `rectbench list formats` names"
+
 
 def parse_document(text: str, file: str) -> Section:
     """The top mapping of a YAML, JSON or XML text; raises InvalidInput where there is none."""
     try:
         content = parse(text)
     except Malformed as error:
+        opening = next((line for line in map(str.strip, text.splitlines()) if line and line[0] != "#"), "")
+        if not OPENING.match(opening):
+            raise InvalidInput(f"{file}: is no calibration but text, {shown(opening)}; {EXPECTED}") from None
         raise InvalidInput(f"{file}: {one_line(error)}; expected `key: value`") from None
     if not isinstance(content, dict):
         raise InvalidInput(f"{file}: is no calibration known here but {shown(content)}; expected `key: ...`")

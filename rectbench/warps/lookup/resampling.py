@@ -51,7 +51,7 @@ class Resampler:
     >>> rig = rb.load_rig("t265")
     >>> resample = rb.Resampler.of(rb.rectify(rig, method="abraham"), "left", filter="area")
     >>> resample(np.zeros((rig.left.height, rig.left.width, 3), np.uint8)).shape
-    (805, 804, 3)
+    (800, 800, 3)
     """
 
     side: Side

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -11,10 +12,10 @@ from rectbench.cameras import Camera
 from rectbench.rigs import Rig
 from rectbench.types import FloatArray
 from rectbench.warps.frame import angles, rectifying_rotations
-from rectbench.warps.view.sampling import outline_pixels
+from rectbench.warps.view.boundary import extremes
 
-ABOUT_DEG, ABOUT_RAYS = 20, 360
-"""How far around the cones where a lens is blind its view is looked at ray by ray, and rays a ring."""
+SLACK_RAD = 1e-5
+"""By so much more than the angles that were found, so that rounding loses no pixel."""
 
 
 class Range(NamedTuple):
@@ -30,7 +31,7 @@ class ViewAngles(NamedTuple):
     >>> import rectbench as rb
     >>> rig = rb.load_rig("t265")
     >>> round(rb.view_angles(rig).gamma.high, 3)
-    1.401
+    1.395
     """
 
     gamma_left: Range
@@ -43,57 +44,40 @@ class ViewAngles(NamedTuple):
         return _union(self.gamma_left, self.gamma_right)
 
 
+@lru_cache(maxsize=64)
 def view_angles(rig: Rig) -> ViewAngles:
-    """Ranges of γ and β over all pixels of both images, in the rig's rectified frame.
+    """Ranges of γ and β over all pixels of both images, in the rig's rectified frame; exact to 1e-5 rad.
 
     >>> import numpy as np
     >>> import rectbench as rb
     >>> np.degrees(rb.view_angles(rb.load_rig("t265"))).round()
-    array([[-81.,  80.],
+    array([[-80.,  80.],
            [-80.,  80.],
-           [-81.,  81.]])
+           [-80.,  80.]])
     """
-    gammas: list[Range] = []
-    betas: list[Range] = []
-    for camera, R_rect_cam in zip((rig.left, rig.right), rectifying_rotations(rig), strict=True):
-        pixels, spacing = outline_pixels(camera)
-        gamma, beta = angles(camera.unproject(pixels)[0] @ R_rect_cam.T)
-        # Between two grid pixels the image circle may reach further, by their spacing at the most.
-        margin = spacing / max(camera.size)
-        gammas.append(_range(gamma, margin, _reach(camera, R_rect_cam)))
-        betas.append(_range(np.append(beta, _beta_about(camera, R_rect_cam)), margin, math.pi))
-    return ViewAngles(gammas[0], gammas[1], _union(betas[0], betas[1]))
+    rotations = rectifying_rotations(rig)
+    (gamma_left, beta_left), (gamma_right, beta_right) = (
+        _ranges(camera, R_rect_cam)
+        for camera, R_rect_cam in zip((rig.left, rig.right), rotations, strict=True)
+    )
+    return ViewAngles(gamma_left, gamma_right, _union(beta_left, beta_right))
 
 
-def _reach(camera: Camera, R_rect_cam: FloatArray) -> float:
-    """The greatest |γ| that the camera can see."""
-    if camera.blind is None:
-        return math.pi / 2
-    off = np.linalg.norm((R_rect_cam @ camera.blind.axis)[1:])
-    return math.pi / 2 - max(0.0, math.radians(camera.blind.within_deg) - math.asin(min(1.0, float(off))))
+def _ranges(camera: Camera, R_rect_cam: FloatArray) -> tuple[Range, Range]:
+    """γ and β that the camera sees: on its boundary, and at an epipole, where all epipolar lines meet."""
+    low, high = extremes(camera, lambda rays: np.stack(angles(rays @ R_rect_cam.T)))
+    behind, ahead = camera.sees(np.array([[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]]) @ R_rect_cam)
+    gamma = Range(-math.pi / 2 if behind else low[0], math.pi / 2 if ahead else high[0])
+    beta = Range(-math.pi, math.pi) if behind or ahead else Range(low[1], high[1])
+    return _widened(gamma, math.pi / 2), _widened(beta, math.pi)
 
 
-def _beta_about(camera: Camera, R_rect_cam: FloatArray) -> FloatArray:
-    """The angles β [N] that the camera sees around the cones where it is blind, to a degree.
-
-    So near to the epipoles pixels of a grid are many degrees of β apart.
-    """
-    if camera.blind is None:
-        return np.empty(0)
-    off = math.radians(camera.blind.within_deg) + np.radians(np.arange(ABOUT_DEG + 1))
-    rays = camera.blind.rings(off, ABOUT_RAYS)
-    _, beta = angles(rays[camera.sees(rays)] @ R_rect_cam.T)
-    return np.concatenate([beta - math.pi / ABOUT_RAYS, beta + math.pi / ABOUT_RAYS])
+def _widened(angles: Range, limit: float) -> Range:
+    return Range(max(float(angles.low) - SLACK_RAD, -limit), min(float(angles.high) + SLACK_RAD, limit))
 
 
 def _union(a: Range, b: Range) -> Range:
     return Range(min(a.low, b.low), max(a.high, b.high))
-
-
-def _range(values: FloatArray, margin: float, limit: float) -> Range:
-    low, high = float(np.nanmin(values)), float(np.nanmax(values))
-    slack = margin * (high - low)
-    return Range(max(low - slack, -limit), min(high + slack, limit))
 
 
 def perspective_size(rig: Rig) -> tuple[int, int]:

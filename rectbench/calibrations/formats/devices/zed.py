@@ -15,6 +15,7 @@ spells `4k`. Beside it writes `zed_calibration_<serial>.yml`: `Size`, `K_LEFT`, 
 from __future__ import annotations
 
 import configparser
+import re
 from collections.abc import Sequence
 
 import cv2
@@ -124,7 +125,7 @@ def _number(stereo: Section, key: str, resolution: str) -> float:
 FORMAT = RigFormat(
     "zed",
     "Stereolabs ZED factory calibration (.conf)",
-    lambda source: "[LEFT_CAM_" in source.head,
+    lambda source: bool(re.search(r"(?m)^\s*\[LEFT_CAM_", source.head)),
     _read,
 )
 

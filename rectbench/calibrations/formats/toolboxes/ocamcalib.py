@@ -36,6 +36,9 @@ BLOCKS = (
     "the affine parameters c, d, e",
     "the image size: height and width",
 )
+MARK = re.compile(r"(?m)^\s*#.*(polynomial coefficients|ocam_model|inverse mapping function)")
+"""A comment of the file."""
+
 MAX_COEFFICIENTS = 50
 
 LAYOUTS = {"ocam": ("ocam", ("cx", "cy", "c", "d", "e", "poly", "inverse_poly"))}
@@ -111,7 +114,7 @@ def _numbers(source: Source, words: list[str], what: str) -> list[float]:
 
 
 def _recognises(source: Source) -> bool:
-    return bool(re.search(r"polynomial coefficients|ocam_model|inverse mapping function", source.head))
+    return bool(MARK.search(source.head))
 
 
 def _texts(rig: Rig, name: str) -> dict[str, str]:
