@@ -8,7 +8,9 @@ VIEW_DEG = (10.0, 150.0)
 """The focal length is held to views between these, the plausible ones: small rotations leave it open, so that
 noise would carry it anywhere."""
 HALF_TURN = np.diag([-1.0, -1.0, 1.0])
-"""Of both images leaves the rows as they are."""
+"""About the optical axis."""
+HALF_TURNS = (np.eye(3), HALF_TURN, np.diag([-1.0, 1.0, -1.0]), np.diag([1.0, -1.0, -1.0]))
+"""About each axis, and none: of both images they leave rows that correspond corresponding."""
 
 
 def intrinsics(focal: float, centre: np.ndarray) -> np.ndarray:
@@ -33,10 +35,9 @@ def fundamental_of(H_left: np.ndarray, H_right: np.ndarray) -> np.ndarray:
 
 
 def upright(R_left: np.ndarray, R_right: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The same two rotations, or both with half a turn more, whichever leaves the images more upright."""
-    if np.trace(R_left[:2, :2] + R_right[:2, :2]) < 0:
-        return HALF_TURN @ R_left, HALF_TURN @ R_right
-    return R_left, R_right
+    """The same two rotations after the half turn, or none, that leaves both images most upright."""
+    turn = max(HALF_TURNS, key=lambda turn: float(np.trace(turn @ (R_left + R_right))))
+    return turn @ R_left, turn @ R_right
 
 
 def upright_roll(F: np.ndarray, centre: np.ndarray) -> float:
