@@ -86,6 +86,8 @@ from .warps import Profile as Profile
 from .warps import Radial as Radial
 from .warps import Rectification as Rectification
 from .warps import Resampler as Resampler
+from .warps import ScanLines as ScanLines
+from .warps import SplineSurface as SplineSurface
 from .warps import Stereographic as Stereographic
 from .warps import Target as Target
 from .warps import Upright as Upright

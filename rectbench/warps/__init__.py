@@ -16,6 +16,8 @@ from rectbench.warps.profiles import Cubic as Cubic
 from rectbench.warps.profiles import Profile as Profile
 from rectbench.warps.profiles import Radial as Radial
 from rectbench.warps.rectification import Rectification as Rectification
+from rectbench.warps.scan_lines import ScanLines as ScanLines
+from rectbench.warps.scan_lines import SplineSurface as SplineSurface
 from rectbench.warps.targets import Epipolar as Epipolar
 from rectbench.warps.targets import Framed as Framed
 from rectbench.warps.targets import Perspective as Perspective
