@@ -98,6 +98,7 @@ from .warps import centre_rays as centre_rays
 from .warps import centre_resolution_px as centre_resolution_px
 from .warps import evaluation_pixels as evaluation_pixels
 from .warps import framed as framed
+from .warps import lattice_pixels as lattice_pixels
 from .warps import load_rectification as load_rectification
 from .warps import opencv_form as opencv_form
 from .warps import outline_pixels as outline_pixels

@@ -17,8 +17,9 @@ import rectbench as rb
 from ._stretch_energies import StretchEnergy
 
 DEGREE = 3
-HOLD = 1e-7
-"""Weight of the squared distance from a fit's start, too small to matter but where no pixel is."""
+HOLD, BENT_COLUMNS, BENT_ROWS = 1e-7, 1e-6, 1e-5
+"""Weights of squared distances from a fit's start and of squared second differences along what is free, of h
+and of g: too small to matter but where no pixel is."""
 SETTLED = 1e-6
 """A fit ends where a step takes less than this share of the energy away."""
 MOST_STEPS = 200
@@ -81,6 +82,7 @@ class FreeForm:
         index, basis = zip(*(self.local(side) for side in range(2)), strict=True)
         self.index, self.basis = np.concatenate(index), np.concatenate(basis)
         """[N, k], the coefficients that a pixel depends on, and [N, 3, k], how its x does."""
+        self.bending = self.second_differences()
         self.pairs = (self.index[:, :, None] * self.count + self.index[:, None]).ravel()
 
     def local(self, side: int) -> tuple[np.ndarray, np.ndarray]:
@@ -100,6 +102,17 @@ class FreeForm:
         basis[:, 1, of_columns] = (bend[:, :, None] * N[:, None]).reshape(count, -1)
         basis[:, 2, of_rows] = Q
         return np.concatenate([column.reshape(count, -1), row], axis=1), basis
+
+    def second_differences(self) -> np.ndarray:
+        """[M, M], half of what its quadratic form adds to the energy."""
+        form = np.zeros((self.count, self.count))
+        columns = np.arange(self.split).reshape(2, self.lines, self.places)
+        rows = np.arange(self.split, self.count).reshape(self.curves, -1)
+        curves = [(BENT_COLUMNS, curve) for side in columns for curve in (*side[:, 1:], *side.T)]
+        for weight, curve in (*curves, *((BENT_ROWS, row) for row in rows)):
+            bends = np.diff(np.eye(len(curve)), n=2, axis=0)
+            form[np.ix_(curve, curve)] += weight * bends.T @ bends
+        return form
 
     def even(self) -> np.ndarray:
         """z of û = f γ, v̂ = f β."""
@@ -126,25 +139,31 @@ class FreeForm:
         return Fit(z, value)
 
     def value(self, z: np.ndarray, held: np.ndarray) -> float:
-        """The energy of z [M], and of its distance from where it is held."""
+        """The energy of z [M] and its restraint, held to a place."""
         with np.errstate(all="ignore"):
             energies, _, _ = self.energy(self.x(z))
-            return float(energies.sum() + HOLD / 2 * (z - held) @ (z - held))
+        return float(energies.sum()) + self.restraint(z, held)
 
     def derivatives(self, z: np.ndarray, held: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
         """The same with its gradient [M] and Hessian [M, M]."""
         energies, by_x, by_xx = self.energy(self.x(z))
         by_c = np.einsum("in,nik->nk", by_x, self.basis)
-        curved = np.matmul(np.moveaxis(by_xx, -1, 0), self.basis)
-        by_cc = np.matmul(self.basis.transpose(0, 2, 1), curved)
+        by_cc = np.matmul(self.basis.transpose(0, 2, 1), np.matmul(np.moveaxis(by_xx, -1, 0), self.basis))
         first = np.bincount(self.index.ravel(), by_c.ravel(), self.count)
         second = np.bincount(self.pairs, by_cc.ravel(), self.count**2).reshape(self.count, -1)
         first, second = self.to_steps(first), self.to_steps(self.to_steps(second).T)
         steps = self.steps(z)
         rate = np.where(self.begins, self.focal_px, steps)
-        value = float(energies.sum() + HOLD / 2 * (z - held) @ (z - held))
-        bent = np.where(self.begins, 0.0, steps * first) + HOLD
-        return value, rate * first + HOLD * (z - held), rate[:, None] * second * rate + np.diag(bent)
+        curved = np.diag(np.where(self.begins, 0.0, steps * first) + HOLD) + self.bending
+        return (
+            float(energies.sum()) + self.restraint(z, held),
+            rate * first + HOLD * (z - held) + self.bending @ z,
+            rate[:, None] * second * rate + curved,
+        )
+
+    def restraint(self, z: np.ndarray, held: np.ndarray) -> float:
+        """What keeps z [M] in its place, and from bending, where nothing else does."""
+        return float(HOLD * (z - held) @ (z - held) + z @ self.bending @ z) / 2
 
     def x(self, z: np.ndarray) -> np.ndarray:
         """∂h/∂γ, ∂h/∂β and g' [N, 3] at the pixels."""

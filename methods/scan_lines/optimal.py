@@ -18,10 +18,9 @@ from .log_polar import LogPolar
 from .polar import Polar
 from .polar_optimal import ELSEWHERE, PolarOptimal
 
-FITTED_PIXELS, LEVELS = 3000, 3
+FITTED_PIXELS, LEVELS = 3500, 3
 """Pixels an image, where nobody asks for certain ones, and how often they get denser towards the epipoles."""
-GOLDEN_SECTION = (5**0.5 - 1) / 2
-PIXELS_A_COEFFICIENT = 5
+PIXELS_A_COEFFICIENT = 8
 ROWS_FINER = 4
 """So many times the intervals of h, a surface, has g, a curve: where lines end its slope changes quickly."""
 FIRST_INTERVALS, MOST_INTERVALS = 4, 16
@@ -46,6 +45,10 @@ class Options(rb.Options):
     )
     intervals: int | None = rb.option(
         None, "intervals of h along either angle; as many as gain anything where left out", ge=1, le=32
+    )
+    search: Literal["thorough", "quick"] = rb.option(
+        "thorough",
+        "thorough: from several starts, and never above another method; quick: from the best h(γ) alone",
     )
 
 
@@ -78,11 +81,12 @@ class Optimal(rb.Rectifier[Options]):
 
         intervals = options.intervals or FIRST_INTERVALS
         splines, alike = form(intervals), form(intervals, "separable")
-        starts = splines.even(), alike.refined(alike.least(alike.even()).z, splines)
-        found, other = sorted(map(splines.least, starts), key=lambda fit: fit.energy)
+        found = splines.least(alike.refined(alike.least(alike.even()).z, splines))
         notes: dict[str, float | str] = {}
-        if (apart := distortion(other.energy) / distortion(found.energy) - 1) > ENOUGH_GAIN:
-            notes["warning"] = f"two starts end {apart:.1%} apart: there may be less than was found"
+        if options.search == "thorough":
+            found, other = sorted((found, splines.least(splines.even())), key=lambda fit: fit.energy)
+            if (apart := distortion(other.energy) / distortion(found.energy) - 1) > ENOUGH_GAIN:
+                notes["warning"] = f"two starts end {apart:.1%} apart: there may be less than was found"
 
         while options.intervals is None and intervals < MOST_INTERVALS:
             finer = form(2 * intervals)
@@ -95,7 +99,7 @@ class Optimal(rb.Rectifier[Options]):
 
         best = rectification(rig, splines, found.z)
         least = energy.of_rectification(best)
-        for name, rival in served(problem):
+        for name, rival in served(problem) if options.search == "thorough" else ():
             if (theirs := energy.of_rectification(rival)) < least:
                 best, least, notes["taken_from"] = rival, theirs, name
         notes |= {
@@ -116,27 +120,20 @@ def fitted(warp: rb.Warp, asked: np.ndarray) -> WeightedPixels:
 
 
 def spread(warp: rb.Warp, count: int) -> WeightedPixels:
-    """About `count` pixels, and more of less weight towards the epipoles, where distortion grows.
+    """Pixels, `count` of a full image, and more of less weight towards the epipoles, where distortion grows.
 
-    Where lines are 2^k times as close as on the middle one, 4^k times as many of Fibonacci's lattice. No two
-    of that share a row: rows of a grid are nearly lines of one β, and between two of them g would be free.
+    Where lines are 2^k times as close as on the middle one, 4^k times as many of a lattice no two of which
+    share a row: rows of a grid are nearly lines of one β, and between two of them g would be free.
     """
     pixels, weights = [], []
     for k in range(LEVELS):
-        lattice = fibonacci_lattice(warp.source.size, 4**k * count)
+        lattice = rb.lattice_pixels(warp.source, 4**k * count)
         gamma = warp.forward(lattice)[:, 0]
         closer = np.log2(1 / np.cos(gamma))
         there = (closer >= k) & ((closer < k + 1) | (k == LEVELS - 1))
         pixels.append(lattice[there])
         weights.append(np.full(there.sum(), 4.0**-k))
     return WeightedPixels(np.concatenate(pixels), np.concatenate(weights))
-
-
-def fibonacci_lattice(size: tuple[int, int], count: int) -> np.ndarray:
-    """Pixels [count, 2], evenly all over an image: even steps across, of a golden section down."""
-    number = np.arange(count)
-    shares: np.ndarray = np.stack([(number + 0.5) / count, number * GOLDEN_SECTION % 1], axis=-1)
-    return shares * np.array(size) - 0.5
 
 
 def rectification(rig: rb.Rig, splines: FreeForm, z: np.ndarray) -> rb.Rectification:

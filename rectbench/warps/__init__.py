@@ -31,6 +31,7 @@ from rectbench.warps.view.framing import Framing as Framing
 from rectbench.warps.view.framing import framed as framed
 from rectbench.warps.view.perspective import PerspectiveFrame as PerspectiveFrame
 from rectbench.warps.view.sampling import evaluation_pixels as evaluation_pixels
+from rectbench.warps.view.sampling import lattice_pixels as lattice_pixels
 from rectbench.warps.view.sampling import outline_pixels as outline_pixels
 from rectbench.warps.warp import Warp as Warp
 from rectbench.warps.wide.longitudes import Planospheric as Planospheric
