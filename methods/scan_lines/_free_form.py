@@ -221,9 +221,11 @@ class FreeForm:
         left, right = (rb.SplineSurface.of(self.view.beta, s, c) for s, c in zip(spans, each, strict=True))
         return left, right
 
-    def profile(self, z: np.ndarray) -> rb.MonotoneSpline:
-        """g, shared."""
-        return rb.MonotoneSpline.of(self.down[DEGREE:-DEGREE], self.coefficients(z)[self.split :])
+    def profiles(self, z: np.ndarray) -> tuple[rb.MonotoneSpline, rb.MonotoneSpline]:
+        """g of either image, one and the same where they share it."""
+        slopes = self.coefficients(z)[self.split :].reshape(self.curves, -1)
+        knots = self.down[DEGREE:-DEGREE]
+        return rb.MonotoneSpline.of(knots, slopes[0]), rb.MonotoneSpline.of(knots, slopes[-1])
 
 
 def descent(hessian: np.ndarray, gradient: np.ndarray) -> np.ndarray | None:

@@ -9,7 +9,7 @@ import numpy as np
 
 import rectbench as rb
 
-from ._free_form import Columns, FreeForm, Intervals
+from ._free_form import Columns, FreeForm, Intervals, Rows
 from ._log_energy import WeightedPixels
 from ._stretch_energies import StretchEnergy
 from .abraham import Abraham
@@ -42,6 +42,9 @@ class Options(rb.Options):
     )
     columns: Columns = rb.option(
         "full", "full: û = h(β, γ), each line as is best for it; separable: û = h(γ), all lines alike"
+    )
+    rows: Rows = rb.option(
+        "shared", "per-image gives each image a g of its own, which rectifies nothing: for what sharing costs"
     )
     intervals: int | None = rb.option(
         None, "intervals of h along either angle; as many as gain anything where left out", ge=1, le=32
@@ -77,7 +80,8 @@ class Optimal(rb.Rectifier[Options]):
         view, focal_px = rb.view_angles(rig), rb.centre_resolution_px(rig)
 
         def form(intervals: int, columns: Columns = options.columns) -> FreeForm:
-            return FreeForm(energy, view, Intervals(intervals, ROWS_FINER * intervals), focal_px, columns)
+            both = Intervals(intervals, ROWS_FINER * intervals)
+            return FreeForm(energy, view, both, focal_px, columns, options.rows)
 
         intervals = options.intervals or FIRST_INTERVALS
         splines, alike = form(intervals), form(intervals, "separable")
@@ -138,13 +142,12 @@ def spread(warp: rb.Warp, count: int) -> WeightedPixels:
 
 def rectification(rig: rb.Rig, splines: FreeForm, z: np.ndarray) -> rb.Rectification:
     """The free form's maps in a frame that just holds both images; what is far has about no disparity."""
-    view, rows = splines.view, splines.profile(z)
-    first, last = float(rows(rows.low)), float(rows(rows.high))
+    view, rows = splines.view, splines.profiles(z)
+    height = float(max(v(v.high) for v in rows))  # from 0 on
+    sides = (rig.left, rig.right), rb.rectifying_rotations(rig), splines.surfaces(z), rows
     warps = [
-        rb.Warp(camera, R_rect_cam, rb.ScanLines(columns, rows.framed(first, 1.0)))
-        for camera, R_rect_cam, columns in zip(
-            (rig.left, rig.right), rb.rectifying_rotations(rig), splines.surfaces(z), strict=True
-        )
+        rb.Warp(camera, R_rect_cam, rb.ScanLines(u, v.framed(0.0, 1.0)))
+        for camera, R_rect_cam, u, v in zip(*sides, strict=True)
     ]
     offsets = 0.0, apart_px(rig, *warps)
     reached = []
@@ -158,8 +161,8 @@ def rectification(rig: rb.Rig, splines: FreeForm, z: np.ndarray) -> rb.Rectifica
         for warp, offset in zip(warps, offsets, strict=True)
     ]
     if min(-view.beta.low, view.beta.high) >= np.pi:
-        targets = [rb.Wrapped(target, -0.5, last - first) for target in targets]
-    size = int(np.ceil(max(reached) - start)), int(np.ceil(last - first))
+        targets = [rb.Wrapped(target, -0.5, height) for target in targets]
+    size = int(np.ceil(max(reached) - start)), int(np.ceil(height))
     return rb.Rectification.from_targets(rig, targets[0], targets[1], size)
 
 

@@ -47,7 +47,7 @@ def test_the_energies_are_the_metrics_of_any_map(objective: str) -> None:
     form = form_of(problem, energy, 2)
     z = somewhere(form)
     values, _, _ = energy(form.x(z))
-    surfaces, v = form.surfaces(z), form.profile(z)
+    surfaces, v = form.surfaces(z), form.profiles(z)[0]
     rect = rb.Rectification.from_targets(problem.rig, *(rb.ScanLines(u, v) for u in surfaces), (100, 100))
     assert values.sum() == pytest.approx(energy.of_rectification(rect), rel=1e-9)
     jacobians = Jacobians.at(rect)
