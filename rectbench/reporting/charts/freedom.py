@@ -49,7 +49,7 @@ class Freedom:
     @property
     def least(self) -> Point:
         """The floor: full columns and shared rows."""
-        return self.free["full"][-1]
+        return min(self.free["full"], key=lambda point: point.distortion)
 
     @property
     def enough(self) -> Point:
@@ -82,7 +82,7 @@ class FreedomChart(Figure):
 def sentences(data: list[Freedom]) -> tuple[str, str, str]:
     """What is gained by free lines, what sharing rows costs, and what scan lines cost at all."""
 
-    lines = [1 - one.least.distortion / one.free["separable"][-1].distortion for one in data]
+    lines = [1 - one.least.distortion / min(p.distortion for p in one.free["separable"]) for one in data]
     sharing = [_nearest(one).distortion / one.free["per-image"][0].distortion - 1 for one in data]
     above = [one.closed["local-homography"].distortion / one.least.distortion - 1 for one in data]
     enough = " and ".join(dict.fromkeys(f"{one.enough.coefficients:.0f}" for one in data))
