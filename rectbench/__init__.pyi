@@ -86,6 +86,8 @@ from .warps import Profile as Profile
 from .warps import Radial as Radial
 from .warps import Rectification as Rectification
 from .warps import Resampler as Resampler
+from .warps import ScanLines as ScanLines
+from .warps import SplineSurface as SplineSurface
 from .warps import Stereographic as Stereographic
 from .warps import Target as Target
 from .warps import Upright as Upright
@@ -96,6 +98,7 @@ from .warps import centre_rays as centre_rays
 from .warps import centre_resolution_px as centre_resolution_px
 from .warps import evaluation_pixels as evaluation_pixels
 from .warps import framed as framed
+from .warps import lattice_pixels as lattice_pixels
 from .warps import load_rectification as load_rectification
 from .warps import opencv_form as opencv_form
 from .warps import outline_pixels as outline_pixels

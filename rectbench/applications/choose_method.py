@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, is_dataclass, replace
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -25,7 +26,15 @@ from rectbench.rigs import Rig
 from rectbench.scored import Delivered, ScoredPixels, ScoredView, check_agreement
 from rectbench.scored.differences import differences
 from rectbench.types import BoolArray, FloatArray, Images, Matches
-from rectbench.warps import Framing, Rectification, centre_rays, framed, rectifying_rotations
+from rectbench.warps import (
+    Framing,
+    MonotoneSpline,
+    Rectification,
+    SplineSurface,
+    centre_rays,
+    framed,
+    rectifying_rotations,
+)
 from rectbench.warps.frame import angles
 from rectbench.warps.jacobians import LogStretches
 from rectbench.warps.lookup.resampling import SIDES
@@ -89,10 +98,20 @@ class Choice:
         others = [c for c in self.candidates[1:] if c.rectification is not None]
         if rivals := [c for c in others if _rows_are_good(c, self.candidates)]:
             parts.append(f"next is {rivals[0].method} with {rivals[0].measured[RANKING]:.3f}")
+        if gain := self._gain_of_freedom(rivals):
+            parts.append(gain)
         if worse := [c.method for c in others if c not in rivals]:
             names = " and ".join(worse)
             parts.append(f"not counting {names}, whose rows are over {ROWS_AS_GOOD_PX:g} px worse")
         return "; ".join(parts)
+
+    def _gain_of_freedom(self, rivals: Sequence[Candidate]) -> str:
+        """How much less a free optimum has than the best map that a few numbers tell; empty of such a map."""
+        closed = [c for c in rivals if c.rectification and not has_splines(c.rectification.left.target)]
+        if not closed or not has_splines(self.rectification.left.target):
+            return ""
+        gain = 1 - self.best.measured[RANKING] / closed[0].measured[RANKING]
+        return f"its free curves gain {gain:.0%} over {closed[0].method}, the best closed form"
 
 
 def best_method(
@@ -150,6 +169,14 @@ def best_method(
             (reasons,) = by_reason
         raise Unsupported(f"no method applies to rig {rig.name}: {reasons}")
     return Choice(tuple(sorted(tried, key=lambda candidate: _rank(candidate, tried))), chosen)
+
+
+def has_splines(target: Any) -> bool:
+    """Whether a map is made of splines, by the parts of its target, rather than of a few numbers."""
+    if isinstance(target, MonotoneSpline | SplineSurface):
+        return True
+    parts = fields(target) if is_dataclass(target) else ()
+    return any(has_splines(getattr(target, part.name)) for part in parts)
 
 
 def uncalibrated_methods() -> list[str]:

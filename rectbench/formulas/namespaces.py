@@ -26,7 +26,11 @@ def _interval(knots: Any, x: Any) -> Any:
     return np.clip(np.searchsorted(knots, x, side="right") - 1, 0, len(knots) - 2)
 
 
-NUMPY = _functions_of(np, {"interval": _interval, "take": lambda table, number: table[number]})
+def _take(table: Any, number: Any) -> Any:
+    return table[np.nan_to_num(number, nan=0.0).astype(np.intp)]
+
+
+NUMPY = _functions_of(np, {"interval": _interval, "take": _take})
 
 
 def is_number(x: Any) -> bool:
@@ -70,7 +74,7 @@ def drjit_namespace() -> Formulas:
 
     own: dict[str, Callable[..., Any]] = {
         "interval": interval,
-        "take": lambda table, number: dr.gather(Float64, table, number),
+        "take": lambda table, number: dr.gather(Float64, table, UInt32(number)),
         "where": where,
         "hypot": lambda x, y: dr.sqrt(x * x + y * y),  # dr.hypot guards against overflow: no ray comes near
         "pow": dr.power,

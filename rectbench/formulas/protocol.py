@@ -126,7 +126,8 @@ class ArrayFunctions(Protocol):
         """
 
     def take(self, table: Any, number: Any, /) -> Any:
-        """table[number], entry by entry: of a constant that is an array, at numbers of an `interval`."""
+        """table[number], entry by entry: of a constant that is an array, at numbers of an `interval`, or
+        at whole ones from other formulas. Of NaN any entry."""
 
 
 class Formulas(ArrayFunctions, Protocol):

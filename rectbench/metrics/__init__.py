@@ -3,6 +3,7 @@
 Imports plugins and what is below.
 """
 
+from rectbench.metrics.analyses.floor import ExcessOverFloor as ExcessOverFloor
 from rectbench.metrics.analyses.frame import frame_costs as frame_costs
 from rectbench.metrics.analyses.uncertainty import Uncertainty as Uncertainty
 from rectbench.metrics.analyses.uncertainty import uncertainty as uncertainty

@@ -10,6 +10,7 @@ from typing import Any
 
 from rectbench.errors import InvalidInput, InvalidResult, UnknownName
 from rectbench.plugins.metric import METRICS, Case, Known, Metric, Need
+from rectbench.plugins.rectifier import METHODS
 from rectbench.registry import Plugin, is_path, registry
 from rectbench.store.closure import PACKAGE
 
@@ -23,6 +24,7 @@ BUNDLES: Mapping[str, tuple[str, ...]] = {
         "sampling",
         "order",
         "row_misfit",
+        "floor",
     ),
     "homography": ("loop_zhang", "mallon_whelan", "usr_cgd", "gluckman_nayar"),
 }
@@ -61,12 +63,14 @@ def needs_of(asked: Iterable[str | Path]) -> frozenset[Need]:
 
 
 def digests_of(asked: Iterable[str | Path]) -> dict[str, str]:
-    """The digests of these metrics' sources by their names, for the key of a cell.
+    """The digests of these metrics' sources by their names, for the key of a cell; of methods they fit, too.
 
     Empty of the built-in ones: the key covers what `rectbench.metrics` imports, and these are all of them.
     """
     plugins = metrics_of(asked).values()
-    return {p.name: "" if p.path.resolve().is_relative_to(PACKAGE) else p.digest for p in plugins}
+    own = {p.name: "" if p.path.resolve().is_relative_to(PACKAGE) else p.digest for p in plugins}
+    methods = sorted({name for p in plugins for name in p.value.fits})
+    return own | {f"method {name}": registry(METHODS).get(name).digest for name in methods}
 
 
 def score(case: Case, asked: Iterable[str | Path]) -> dict[str, float]:

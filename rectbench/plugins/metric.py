@@ -273,6 +273,8 @@ class Metric(ABC):
     """What of the pair it looks at beside the geometry: `true_matches`, which lenses alone have too; `truth`
     (these matches included); or `images` (with what is found in them). Nothing is rendered that no metric
     needs, and nothing else is handed out."""
+    fits: ClassVar[tuple[str, ...]] = ()
+    """Methods that it fits itself, to compare with: their sources shape its numbers too."""
     columns: ClassVar[tuple[Column, ...]]
 
     @abstractmethod

@@ -12,6 +12,8 @@ from rectbench.reporting.tables.summaries import averaged
 
 KEPT = "view_kept"
 """The column of the largest share of the view that a method shows all of."""
+FLOOR = "log_distortion_floor"
+"""The column of the least that rectifications to scan lines can have where methods are ranked."""
 
 
 @dataclass(frozen=True)
@@ -26,12 +28,14 @@ class RigCurves:
     curves : by method, log distortion by share (%), ascending; it ends where the method keeps no more on
         some pair.
     kept : by method, the largest share (%) that it keeps on every pair of the rig, where measured.
+    floor : the least log distortion that scan lines can have where methods are ranked, where measured.
     """
 
     rig: str
     views_deg: Mapping[int, float]
     curves: Mapping[str, Mapping[int, float]]
     kept: Mapping[str, float]
+    floor: float | None = None
 
     def view_deg(self, share: float) -> float | None:
         """The view of a share between two measured ones, linear between them; None outside of them."""
@@ -112,6 +116,7 @@ def _of_rig(part: Part, rig: str, results: Sequence[Result], columns: Mapping[in
         {share: view for share, view in views.items() if view is not None},
         {m: _curve(part, own, columns) for m, own in by_method.items()},
         {m: 100 * min(of_pairs) for m, of_pairs in kept.items() if of_pairs},
+        averaged(part.catalogue.column(FLOOR), results).value,
     )
 
 

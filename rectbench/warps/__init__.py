@@ -16,6 +16,8 @@ from rectbench.warps.profiles import Cubic as Cubic
 from rectbench.warps.profiles import Profile as Profile
 from rectbench.warps.profiles import Radial as Radial
 from rectbench.warps.rectification import Rectification as Rectification
+from rectbench.warps.scan_lines import ScanLines as ScanLines
+from rectbench.warps.scan_lines import SplineSurface as SplineSurface
 from rectbench.warps.targets import Epipolar as Epipolar
 from rectbench.warps.targets import Framed as Framed
 from rectbench.warps.targets import Perspective as Perspective
@@ -29,6 +31,7 @@ from rectbench.warps.view.framing import Framing as Framing
 from rectbench.warps.view.framing import framed as framed
 from rectbench.warps.view.perspective import PerspectiveFrame as PerspectiveFrame
 from rectbench.warps.view.sampling import evaluation_pixels as evaluation_pixels
+from rectbench.warps.view.sampling import lattice_pixels as lattice_pixels
 from rectbench.warps.view.sampling import outline_pixels as outline_pixels
 from rectbench.warps.warp import Warp as Warp
 from rectbench.warps.wide.longitudes import Planospheric as Planospheric

@@ -31,6 +31,7 @@ from rectbench.warps.monotone_spline import MonotoneSpline
 from rectbench.warps.planar_polar import PlanarPolar
 from rectbench.warps.profiles import Cubic, FramedProfile, Profile, Radial
 from rectbench.warps.rectification import Rectification
+from rectbench.warps.scan_lines import ScanLines, SplineSurface
 from rectbench.warps.targets import Epipolar, Framed, Perspective, Target, Wrapped
 from rectbench.warps.warp import Warp
 from rectbench.warps.wide.longitudes import Planospheric, Upright
@@ -73,6 +74,9 @@ HEADER = """\
 #      prism         with k the whole number nearest to (beta - first_rad) / piece_rad, from 0 to pieces - 1,
 #                    and d = beta - first_rad - k piece_rad: u = cx + focal_px tan(gamma) / cos(d),
 #                    v = cy + focal_px (2 k tan(piece_rad / 2) + tan(d))
+#      scan-lines    v of beta as above, and u of both angles, rising in gamma: the sum of
+#                    coefficients[i][j] B_i(beta) N_j(gamma), cubic B-splines over as many even intervals
+#                    of either range as make that many; the outer knots are repeated four times
 #      wrapped       its target, whose rows go all around the baseline: beyond row start + turn, and before
 #                    row start, they begin again
 #
@@ -167,6 +171,10 @@ MATRIX = Field(lambda matrix: matrix.tolist(), lambda section, key: section.matr
 NUMBERS = Field(
     lambda numbers: [float(n) for n in numbers], lambda section, key: tuple(section.numbers(key, "numbers"))
 )
+ROWS = Field(
+    lambda rows: [list(map(float, row)) for row in rows],
+    lambda section, key: tuple(map(tuple, section.rows(key, "rows of numbers").tolist())),
+)
 TARGET = Field(
     lambda target: _fields(target, TARGETS),
     lambda section, key: _read(section.section(key, "a target"), "target", TARGETS),
@@ -175,6 +183,10 @@ PROFILE = Field(
     lambda profile: _fields(profile, PROFILES),
     lambda section, key: _read(section.section(key, "a profile"), "profile", PROFILES),
 )
+SURFACE = Field(
+    lambda surface: _fields(surface, SURFACES),
+    lambda section, key: _read(section.section(key, "a surface"), "surface", SURFACES),
+)
 
 Kinds = Mapping[str, tuple[type, Mapping[str, Field]]]
 """By name: the class, and its attributes in the order in which it takes them."""
@@ -182,6 +194,7 @@ Kinds = Mapping[str, tuple[type, Mapping[str, Field]]]
 TARGETS: Kinds = {
     "perspective": (Perspective, {"matrix": MATRIX}),
     "epipolar": (Epipolar, {"u": PROFILE, "v": PROFILE}),
+    "scan-lines": (ScanLines, {"u": SURFACE, "v": PROFILE}),
     "planar-polar": (
         PlanarPolar,
         {"matrix": MATRIX, "reference": NUMBERS, "v": PROFILE, "along": TEXT, "start_px": NUMBER},
@@ -212,8 +225,12 @@ PROFILES: Kinds = {
     "framed": (FramedProfile, {"profile": PROFILE, "start": NUMBER, "scale": NUMBER}),
 }
 
+SURFACES: Kinds = {
+    "spline": (SplineSurface, {"beta": NUMBERS, "gamma": NUMBERS, "coefficients": ROWS}),
+}
 
-def _fields(item: Target | Profile, kinds: Kinds) -> dict[str, Any]:
+
+def _fields(item: Target | Profile | SplineSurface, kinds: Kinds) -> dict[str, Any]:
     """What a target or profile is as plain data; of somebody else's class no more than its name."""
     for kind, (made, fields) in kinds.items():
         if type(item) is made:

@@ -30,10 +30,20 @@ def test_the_best_has_the_least_log_distortion_at_equal_coverage() -> None:
     rectifies = table["log_distortion_on_view"].notna()
     assert table["log_distortion_on_view"][rectifies].is_monotonic_increasing
     assert set(table["method"][applies & ~rectifies]) == {"equirectangular", "stereographic-circles"}
-    assert choice.best.method == table["method"][0] == "polar-optimal"
+    assert choice.best.method == table["method"][0] == "optimal"
     assert choice.best.method in choice.why
     assert "90% of the source pixels" in choice.why
     assert table["method"][1] in choice.why
+
+
+def test_what_free_curves_gain_over_the_best_closed_form_is_told() -> None:
+    choice = best_method(RIG, methods=["abraham", "local-homography", "polar-optimal", "optimal"])
+    values = choice.table.set_index("method")["log_distortion_on_view"]
+    closed = min(("abraham", "local-homography"), key=lambda method: values[method])
+    gain = 1 - values["optimal"] / values[closed]
+    assert f"its free curves gain {gain:.0%} over {closed}, the best closed form" in choice.why
+    assert gain > 0.05
+    assert "free curves" not in best_method(RIG, methods=["abraham", "local-homography"]).why
 
 
 def test_a_share_of_the_view_is_asked_where_nobody_asks() -> None:

@@ -24,6 +24,7 @@ METHODS = (
     "polar",
     "log-polar",
     "polar-optimal",
+    "optimal",
 )
 
 
@@ -41,6 +42,24 @@ def test_what_is_read_is_what_was_written_to_the_last_bit(
     for side in ("left", "right"):
         for ours, theirs in zip(rect.maps(side), again.maps(side), strict=True):
             np.testing.assert_array_equal(ours, theirs)
+
+
+def test_a_reader_with_the_file_alone_gets_the_same_pixels_of_surfaces() -> None:
+    rect = rb.rectify(rig("equidistant"), "optimal")
+    file = yaml.safe_load(rectification_text(rect))
+    pixels = rb.evaluation_pixels(rect.rig.right, 60)
+    x, y, z = np.array(file["right"]["R_rect_cam"]) @ rect.rig.right.unproject(pixels)[0].T
+    told = file["right"]["target"]["u"]
+    c = np.array(told["coefficients"])
+    beta, gamma = (
+        BSpline.design_matrix(angle, np.pad(np.linspace(*told[name], count - 2), 3, mode="edge"), 3).toarray()
+        for name, angle, count in (
+            ("beta", np.arctan2(y, z), len(c)),
+            ("gamma", np.arctan2(x, np.hypot(y, z)), len(c[0])),
+        )
+    )
+    columns = np.einsum("ni,ij,nj->n", beta, c, gamma)
+    np.testing.assert_allclose(columns, rect.right.forward(pixels)[:, 0], atol=1e-9)
 
 
 @pytest.mark.parametrize("method", ["polar", "log-polar"])

@@ -153,6 +153,13 @@ class Section:
             return self._rows(key, value, expected, rows, columns)
         return self.array(key, expected, (rows * columns,)).reshape(rows, columns)
 
+    def rows(self, key: str, expected: str) -> FloatArray:
+        """The matrix under `key`, a list of its rows, as many and as long as they are."""
+        value = self.values.get(key)
+        if not isinstance(value, list) or not value or not isinstance(value[0], list):
+            raise self.fault(key, expected)
+        return self._rows(key, value, expected, len(value), len(value[0]))
+
     def rotation(self, key: str, expected: str = "a 3x3 rotation") -> FloatArray:
         """The rotation [3, 3] under `key`, given as a `matrix`."""
         R = self.matrix(key, expected, 3, 3)

@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rectbench.plugins.figure import Drawing, Figure, FigureData, Look
 from rectbench.reporting.curves import RigCurves, ranked_share, rig_curves
 from rectbench.reporting.shares import measure
-from rectbench.reporting.style import COLUMN_INCHES, FAINT, PAGE_INCHES, plain_log_ticks
+from rectbench.reporting.style import COLUMN_INCHES, FAINT, INK, PAGE_INCHES, plain_log_ticks
 
 if TYPE_CHECKING:
     import matplotlib.figure
@@ -21,6 +21,9 @@ _PANEL_INCHES = 1.42
 _MARK_INCHES, _LETTER_INCHES = 0.4, 0.055
 """Of an entry of the legend in width."""
 _TICKS = (10, 50, 95)
+_FLOOR_SHARE = 30
+"""So far from the share that it is the floor of the floor's line reaches."""
+_FLOOR_LINE: Mapping[str, Any] = {"color": INK, "linewidth": 1.0, "linestyle": (0, (1, 0.7))}
 _ALIKE = 1.08
 """Curves whose values differ by less than this factor lie on one another: they are a line's width apart."""
 _DASH, _MARK, _RING = 2.6, 3.0, 1.7
@@ -59,6 +62,7 @@ class DistortionCoverage(Figure):
                 f"{label.capitalize()} on the share of the view that is nearest to its middle, on the same "
                 "source pixels for all methods; below a share, the field of view in degrees. A curve ends "
                 f"where its method shows no more. Lower is better; the dotted line is at {ranked_at} %."
+                f"{_FLOOR_TEXT.format(ranked_at) if any(panel.floor for panel in panels) else ''}"
                 f"{_ALIKE_TEXT if any(map(_has_alike, panels)) else ''}",
                 data,
                 lambda: draw_curves(data, given.looks),
@@ -75,9 +79,9 @@ def draw_curves(data: CoverageCurves, looks: Mapping[str, Look]) -> matplotlib.f
     rows = math.ceil(len(data.panels) / columns)
     longest = max(len(_label(data, method)) for method in data.methods)
     fitting = max(1, int(width / (_MARK_INCHES + _LETTER_INCHES * longest)))
-    legend_columns = min(fitting, len(data.methods))
+    legend_columns = min(fitting, len(data.methods) + 1)
     panel = _PANEL_INCHES if columns > 2 else 2.1
-    height = 0.35 + 0.15 * math.ceil(len(data.methods) / legend_columns) + panel * rows
+    height = 0.35 + 0.15 * math.ceil((len(data.methods) + 1) / legend_columns) + panel * rows
     figure = matplotlib.figure.Figure(figsize=(width, height), layout="constrained")
     axes = figure.subplots(rows, columns, sharey=True, squeeze=False)
     for ax, one in zip(axes.flat, data.panels, strict=False):
@@ -91,7 +95,7 @@ def draw_curves(data: CoverageCurves, looks: Mapping[str, Look]) -> matplotlib.f
     figure.legend(
         handles=_handles(data, looks),
         loc="outside upper center",
-        ncols=min(legend_columns, len(data.methods)),
+        ncols=legend_columns,
     )
     return figure
 
@@ -99,6 +103,9 @@ def draw_curves(data: CoverageCurves, looks: Mapping[str, Look]) -> matplotlib.f
 def _draw_panel(ax: Axes, one: RigCurves, data: CoverageCurves, looks: Mapping[str, Look]) -> None:
     ax.set_title(one.rig)
     ax.axvline(data.ranked_at, color=FAINT, linewidth=0.6, linestyle=":", zorder=1)
+    if one.floor is not None:
+        level = max(one.floor, _LEAST)
+        ax.plot([data.ranked_at - _FLOOR_SHARE, 104], [level, level], zorder=1, **_FLOOR_LINE)
     for group in alike(one):
         for place, method in enumerate(group):
             curve, (colour, marker, _) = one.curves[method], looks[method]
@@ -138,6 +145,8 @@ def _has_alike(one: RigCurves) -> bool:
     return any(len(group) > 1 for group in alike(one))
 
 
+_FLOOR_LABEL = "floor"
+_FLOOR_TEXT = " The level line is the floor: the least at {} % that any rectification to scan lines can have."
 _ALIKE_TEXT = " Curves that lie on one another take turns in dashes, their marks one around the other."
 
 
@@ -149,10 +158,12 @@ def _tick(one: RigCurves, share: int) -> str:
 def _handles(data: CoverageCurves, looks: Mapping[str, Look]) -> Sequence[object]:
     from matplotlib.lines import Line2D
 
-    return [
+    curves = [
         Line2D([], [], color=looks[m].colour, marker=looks[m].marker, markersize=3, label=_label(data, m))
         for m in data.methods
     ]
+    has_floor = any(one.floor is not None for one in data.panels)
+    return [*curves, *([Line2D([], [], label=_FLOOR_LABEL, **_FLOOR_LINE)] if has_floor else [])]
 
 
 def _label(data: CoverageCurves, method: str) -> str:

@@ -46,6 +46,28 @@ def _cell_centres(camera: Camera, count: float) -> FloatArray:
     return np.stack(np.meshgrid(u, v), axis=-1).reshape(-1, 2)
 
 
+GOLDEN_SECTION = (5**0.5 - 1) / 2
+
+
+def lattice_pixels(camera: Camera, count: int) -> FloatArray:
+    """As many pixels [N, 2] of Fibonacci's lattice over the image, those that the lens sees.
+
+    As even as a grid, but no two share a row or a column (even steps across, of a golden section down), so
+    that they tell more of what varies along rows or columns alone.
+
+    >>> import rectbench as rb
+    >>> rb.lattice_pixels(rb.load_rig("sony-as200v").left, 4).round(1)
+    array([[ 239.5,   -0.5],
+           [ 719.5,  667. ],
+           [1199.5,  254.4],
+           [1679.5,  921.9]])
+    """
+    number = np.arange(count)
+    shares = np.stack([(number + 0.5) / count, number * GOLDEN_SECTION % 1], axis=-1)
+    pixels: FloatArray = shares * np.array(camera.size) - 0.5
+    return pixels[camera.unproject(pixels)[1]]
+
+
 RIM_POINTS = 257
 """Points a side of the rim: between two of them an angle's extreme moves by hundredths of a pixel."""
 
