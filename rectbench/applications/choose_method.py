@@ -19,6 +19,7 @@ from rectbench.errors import InvalidInput, Unsupported, argument
 from rectbench.experiments.execution.outcomes import outcome_of
 from rectbench.margin import MARGIN_DEG
 from rectbench.metrics import frame_costs, row_error, row_misfit
+from rectbench.plugins.defaults import CONTENDERS
 from rectbench.plugins.fitting import checked_options, fit
 from rectbench.plugins.rectifier import METHODS, Problem, Rectifier, pose_problem
 from rectbench.registry import Plugin, registry
@@ -125,7 +126,7 @@ def best_method(
     seed: int = 0,
     margin_deg: float = MARGIN_DEG,
 ) -> Choice:
-    """Try all methods that apply to a rig, and choose.
+    """Try the methods that apply to a rig, and choose.
 
     Parameters
     ----------
@@ -135,7 +136,7 @@ def best_method(
     images, matches : what methods may work from beside the rig, see `rectify`.
     trusted : correspondences by which rows are judged: of matches, or of the corners of a board. Without
         them all rows count as good.
-    methods : names to try; all by default.
+    methods : names to try; by default the contenders among the built-in ones, and all others.
     seed : of the methods' random choices.
     margin_deg : nearer to the epipoles than this the view is trimmed, see `rectify`.
 
@@ -157,7 +158,8 @@ def best_method(
         chosen = replace(chosen, coverage=COVERAGE)
     problem = pose_problem(rig, images=images, matches=matches, seed=seed, margin_deg=margin_deg)
     found = registry(METHODS)
-    plugins = found.plugins() if methods is None else [found.get(name) for name in methods]
+    own = [p for p in found.plugins() if p.name in CONTENDERS or not is_built_in(p)]
+    plugins = own if methods is None else [found.get(name) for name in methods]
     view = ScoredView.of(rig, margin_deg=margin_deg)
     tried = [_tried(plugin, problem, view, chosen, trusted) for plugin in plugins]
     if not any(candidate.rectification for candidate in tried):
@@ -177,6 +179,11 @@ def has_splines(target: Any) -> bool:
         return True
     parts = fields(target) if is_dataclass(target) else ()
     return any(has_splines(getattr(target, part.name)) for part in parts)
+
+
+def is_built_in(plugin: Plugin[Rectifier]) -> bool:
+    """Whether a method came with rectbench."""
+    return type(plugin.value).__module__.startswith(METHODS.packages)
 
 
 def uncalibrated_methods() -> list[str]:
