@@ -11,6 +11,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from scipy.interpolate import BSpline
 from scipy.linalg import cho_factor, cho_solve
+from threadpoolctl import threadpool_limits
 
 import rectbench as rb
 
@@ -120,6 +121,13 @@ class FreeForm:
 
     def least(self, start: np.ndarray) -> Fit:
         """Newton's method from z [M] on, its steps damped as Levenberg's and Marquardt's are."""
+        with threadpool_limits(
+            limits=1, user_api="blas"
+        ):  # on matrices this small threads wait for each other
+            return self.descended(start)
+
+    def descended(self, start: np.ndarray) -> Fit:
+        """The same, on as many threads as there are."""
         z, damping = start, DAMPING
         value, gradient, hessian = self.derivatives(z, start)
         for _ in range(MOST_STEPS):

@@ -102,27 +102,39 @@ class SplineSurface:
     def value(self, c: Any, beta: Any, gamma: Any, xp: Formulas) -> Any:
         """The column of the angles, radians."""
         row, y = _piece((beta - c.beta_low) * c.per_beta, c.down, xp)
-        return _value_and_slope(c, gamma, row, y, xp)[0]
+        column, x = _piece((gamma - c.low) * c.per_gamma, c.across, xp)
+        return xp.polynomial(_along_line(c, row * c.across + column, y, xp), x)
 
     def line(self, c: Any, beta: Any, xp: Formulas) -> tuple[Any, Any, Any, Any]:
         """What `angle` has to know of the line at β: row of patches, place in that, columns of both ends."""
         row, y = _piece((beta - c.beta_low) * c.per_beta, c.down, xp)
-        ends = (_value_and_slope(c, end + 0.0 * beta, row, y, xp)[0] for end in (c.low, c.high))
-        return row, y, *ends
+        return row, y, *(self.value(c, beta, end + 0.0 * beta, xp) for end in (c.low, c.high))
 
     def angle(self, c: Any, line: tuple[Any, Any, Any, Any], value: Any, xp: Formulas) -> Any:
         """γ (radians) of the column on that line; NaN beyond its ends."""
         row, y, first, last = line
+        patch = row * c.across + self._patch_of(c, row, y, value, xp)
+        cubic = tuple(_along_line(c, patch, y, xp))
 
-        def value_and_slope(gamma: Any, row: Any, y: Any) -> tuple[Any, Any]:
-            return _value_and_slope(c, gamma, row, y, xp)
+        def value_and_slope(x: Any, a: Any, b: Any, d: Any, e: Any) -> tuple[Any, Any]:
+            return a + x * (b + x * (d + x * e)), b + x * (2.0 * d + 3.0 * x * e)
 
+        rise = cubic[1] + cubic[2] + cubic[3]
+        start = xp.minimum(xp.maximum((value - cubic[0]) / rise, 0.0), 1.0)
+        x = invert_monotone(value_and_slope, value, 0.0 * start, 0.0 * start + 1.0, start, xp, cubic)
         share = (value - first) / (last - first)
-        low, high = 0.0 * share + c.low, 0.0 * share + c.high
-        start = xp.minimum(xp.maximum(c.low + share * (c.high - c.low), low), high)
-        found = invert_monotone(value_and_slope, value, low, high, start, xp, (row, y))
         inside = (share >= -ANGLE_SLACK_RAD) & (share <= 1.0 + ANGLE_SLACK_RAD)
-        return xp.where(inside, found, math.nan)
+        return xp.where(inside, c.low + (patch - row * c.across + x) / c.per_gamma, math.nan)
+
+    def _patch_of(self, c: Any, row: Any, y: Any, value: Any, xp: Formulas) -> Any:
+        """The number of the last patch in the row that begins at the column or before it, by halving."""
+        found = 0.0 * y
+        for halving in reversed(range((self.intervals[1] - 1).bit_length())):
+            ahead = found + float(2**halving)
+            place = row * c.across + xp.minimum(ahead, c.across - 1.0)
+            begins = xp.polynomial([xp.take(factor, place) for factor in c.c[0]], y)
+            found = xp.where((ahead < c.across) & (begins <= value), ahead, found)
+        return xp.where(found >= 0.0, found, 0.0)
 
 
 @dataclass(frozen=True)
@@ -180,14 +192,11 @@ def _powers(intervals: int) -> FloatArray:
 
 
 def _piece(place: Any, count: Any, xp: Formulas) -> tuple[Any, Any]:
-    """Which of the unit intervals from 0 to `count` a place is in, or nearest to, and how far in."""
-    number = xp.minimum(xp.maximum(xp.floor(place), 0.0), count - 1.0)
+    """Which of the unit intervals from 0 to `count` a place is nearest to, and how far in; NaN: the first."""
+    number = xp.where(place > 0.0, xp.minimum(xp.floor(place), count - 1.0), 0.0)
     return number, place - number
 
 
-def _value_and_slope(c: Any, gamma: Any, row: Any, y: Any, xp: Formulas) -> tuple[Any, Any]:
-    """The column at γ in a row of patches, at y in it, and its slope along γ."""
-    column, x = _piece((gamma - c.low) * c.per_gamma, c.across, xp)
-    patch = row * c.across + column
-    a, b, d, e = (xp.polynomial([xp.take(factor, patch) for factor in of_x], y) for of_x in c.c)
-    return a + x * (b + x * (d + x * e)), (b + x * (2.0 * d + 3.0 * x * e)) * c.per_gamma
+def _along_line(c: Any, patch: Any, y: Any, xp: Formulas) -> list[Any]:
+    """The factors of 1, x, x² and x³ on the line at y in a patch."""
+    return [xp.polynomial([xp.take(factor, patch) for factor in of_x], y) for of_x in c.c]

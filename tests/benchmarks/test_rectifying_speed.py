@@ -34,7 +34,7 @@ def test_opencv_fisheye_table(benchmark: Callable[..., Any], rig: rb.Rig) -> Non
 
 
 @pytest.mark.benchmark(group="lookup table, 1920x1080")
-@pytest.mark.parametrize("method", ["conventional", "abraham", "local-homography"])
+@pytest.mark.parametrize("method", ["conventional", "abraham", "local-homography", "optimal"])
 def test_table(benchmark: Callable[..., Any], rig: rb.Rig, method: str) -> None:
     rect = rb.rectify(rig, method=method)
     same_size = rb.Rectification(rect.rig, rect.left, rect.right, SIZE)
@@ -42,7 +42,9 @@ def test_table(benchmark: Callable[..., Any], rig: rb.Rig, method: str) -> None:
 
 
 @pytest.mark.benchmark(group="fit, 1920x1080, 500 pixels")
-@pytest.mark.parametrize("method", ["conventional", "abraham", "local-homography", "hartley", "fusiello"])
+@pytest.mark.parametrize(
+    "method", ["conventional", "abraham", "local-homography", "hartley", "fusiello", "optimal"]
+)
 def test_fit(benchmark: Callable[..., Any], rig: rb.Rig, method: str) -> None:
     benchmark(rb.rectify, rig, method=method)
 

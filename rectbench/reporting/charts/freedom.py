@@ -97,7 +97,7 @@ def sentences(data: list[Freedom]) -> tuple[str, str, str]:
 
 
 def _both(shares: list[float]) -> str:
-    log, L = (f"{share:.1%}" for share in shares)
+    log, L = (f"{round(share, 3) + 0.0:.1%}" for share in shares)  # without a sign before 0
     return f"{log} (log distortion) and {L} (L)"
 
 
