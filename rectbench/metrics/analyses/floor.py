@@ -20,7 +20,7 @@ from rectbench.warps import lattice_pixels
 
 LOWEST = "optimal"
 """The method that is the floor."""
-FITTED_PIXELS, INTERVALS = 3_000, 6
+FITTED_PIXELS, INTERVALS = 1_500, 5
 """Of an image: more of either move the floor by a thousandth of itself."""
 NONE = 1e-3
 """A floor below this is as good as none, and nothing is a multiple of it: of parallel pinholes it is 0."""
