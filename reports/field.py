@@ -7,7 +7,7 @@ HOMOGRAPHIES = (
     *("hartley", "loop-zhang", "gluckman-nayar", "fusiello", "usr-cgd", "dsr", "opencv-uncalibrated"),
     "s2p-affine",
 )
-SCAN_LINES = ("abraham", "local-homography", "log-polar", "polar", "polar-optimal")
+SCAN_LINES = ("optimal", "polar-optimal", "local-homography", "polar", "log-polar", "abraham")
 WIDE = (
     *("mrcal-latlon", "mrcal-pinhole", "opencv-fisheye", "opencv-omnidir", "psph", "spherical"),
     *("cylinder", "multi-pinhole", "equirectangular", "stereographic-circles"),

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
+from rectbench.metrics.analyses.floor import NONE
 from rectbench.plugins.metric import Column
 from rectbench.plugins.result import Part, Result
 from rectbench.reporting.curves import ranked_share, shares, view_key
@@ -19,8 +20,10 @@ NAME = "survey"
 BOUNDS_DEG = (60.0, 110.0, 165.0)
 """Horizontal fields of view between which one class ends and the next begins: up to the first perspective
 images serve without loss, from the last on hardly any of the view fits into one."""
-FLOOR = 1e-6
-"""Less distortion is rounding."""
+ROUNDING = 1e-6
+"""Less distortion is none."""
+EXCESS, FLOOR = "log_distortion_excess", "log_distortion_floor"
+"""Columns: how far a method is above the least that scan lines can have, and what that is."""
 MIDDLE = 50
 """The lesser share (%) of the view that is looked at."""
 
@@ -62,6 +65,11 @@ def surveyed_columns(part: Part) -> dict[int, Column]:
     return {share: part.catalogue.column(columns[share]) for share in wanted}
 
 
+def excess_column(part: Part) -> Column | None:
+    """That of the excess over the floor; None where it was not measured."""
+    return part.catalogue.column(EXCESS) if EXCESS in part.metrics else None
+
+
 @dataclass(frozen=True)
 class Reached:
     """What a method comes to on a class of lenses: its number on each rig, their average, or why it has none.
@@ -95,7 +103,7 @@ class Surveyed:
     @property
     def place(self) -> tuple[int, float, str]:
         """What methods are sorted by: the more classes are served the better, then the less distorted."""
-        logs = [math.log(max(average, FLOOR)) for average in self.averages]
+        logs = [math.log(max(average, ROUNDING)) for average in self.averages]
         return -len(logs), math.fsum(logs) / max(1, len(logs)), self.method
 
 
@@ -124,6 +132,8 @@ def surveyed(part: Part, column: Column, pose: str) -> tuple[Surveyed, ...]:
 
 def _reached(results: Sequence[Result], lenses: LensClass, column: Column) -> Reached | None:
     own = [r for r in results if r.rig in lenses.rigs]
+    if column.key == EXCESS:  # of no floor nothing is a multiple
+        own = [r for r in own if r.metrics.get(FLOOR, math.inf) > NONE]
     if not own:
         return None
     found, why = averaged(column, own), lacking(own, column)

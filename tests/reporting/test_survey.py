@@ -106,9 +106,24 @@ def test_the_table_shows_row_errors_under_the_noisy_pose(run: Run) -> None:
 def test_what_crops_the_rim_is_compared_in_the_middle_of_the_view(run: Run) -> None:
     table = next(table for table in all_tables(run) if table.name == "survey")
     whole, middle = table.sections
-    assert (whole.title, middle.title) == ("95 % of the view", "50 % of the view")
+    assert whole.title == "log distortion, 95 % of the view"
+    assert middle.title == "log distortion, 50 % of the view"
     dome = {row[0].text: row[5].value for row in middle.rows}
     assert all(isinstance(value, float) for value in dome.values())
+
+
+def test_the_excess_over_the_floor_comes_first_and_leaves_out_what_has_no_floor(write_run: WriteRun) -> None:
+    floors = {"tele": 0.0, "car": 0.1, "camera": 0.1, "fisheye": 0.1, "dome": 0.1}
+    rows = [
+        row(rig, "abraham")
+        | {"log_distortion_floor": floor}
+        | ({"log_distortion_excess": VIEWS_DEG[rig] / 100} if floor else {})
+        for rig, floor in floors.items()
+    ]
+    run = read_run(write_run(rows, figures=("survey",)))
+    excess = next(table for table in all_tables(run) if table.name == "survey").sections[0]
+    assert excess.title == "excess over floor [%], 95 % of the view"
+    assert [entry.text for entry in excess.rows[0][2:6]] == ["–", "90.0", "150.0", "200.0"]
 
 
 def test_a_part_that_does_not_ask_for_a_survey_has_none(write_run: WriteRun) -> None:

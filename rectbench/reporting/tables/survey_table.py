@@ -8,7 +8,14 @@ from rectbench.plugins.metric import Column
 from rectbench.plugins.result import Result
 from rectbench.reporting.names import named
 from rectbench.reporting.shares import measure
-from rectbench.reporting.survey import NAME, Reached, lens_classes, surveyed, surveyed_columns
+from rectbench.reporting.survey import (
+    NAME,
+    Reached,
+    excess_column,
+    lens_classes,
+    surveyed,
+    surveyed_columns,
+)
 from rectbench.reporting.tables.captions import capitalised
 from rectbench.reporting.tables.numbers import MISSING
 from rectbench.reporting.tables.summaries import averaged
@@ -34,8 +41,8 @@ def survey_table(run: Run, part: Run) -> Table | None:
 
     None where no field of view is known.
     """
-    classes, columns = lens_classes(part), surveyed_columns(part)
-    if not classes or not columns:
+    classes = lens_classes(part)
+    if not classes or not surveyed_columns(part):
         return None
     heads = (
         text_heading("method"),
@@ -51,15 +58,22 @@ def survey_table(run: Run, part: Run) -> Table | None:
         caption=(
             f"{capitalised(measure(part.catalogue.ranking))} by class of lenses, by the horizontal field of "
             "view that both images show, in brackets how many rigs: geometric means over the rigs of a "
-            f"class, {part.geometric_pose} pose; or why some pair of the class has none. What serves more "
+            f"class, arithmetic ones of the excess, {part.geometric_pose} pose; or why some pair of the "
+            "class has none. What serves more "
             "classes stands higher, then what distorts less. Row errors are under the "
             f"{' and '.join(part.noisy_poses)} pose, over all lenses that the method serves."
         ),
         headings=heads,
-        sections=tuple(
-            Section(f"{share} % of the view", _rows(run, part, column)) for share, column in columns.items()
-        ),
+        sections=tuple(Section(title, _rows(run, part, column)) for title, column in _titled(part).items()),
     )
+
+
+def _titled(part: Run) -> dict[str, Column]:
+    """What the sections show, by their titles."""
+    columns, excess = surveyed_columns(part), excess_column(part)
+    share = next(iter(columns))
+    above = {f"{excess.full_heading}, {share} % of the view": excess} if excess else {}
+    return above | {f"{measure(column)}, {share} % of the view": column for share, column in columns.items()}
 
 
 def _rows(run: Run, part: Run, column: Column) -> tuple[tuple[Entry, ...], ...]:
