@@ -193,7 +193,7 @@ def test_of_three_cameras_the_pairs_are_listed_and_two_are_read_as_before(
             one["origin"][0] += 0.5
         content[key].append(one)
 
-    with pytest.raises(InvalidInput, match=r"holds 3 cameras; .*third(\.png)? \(baseline 0\.5 m, 100 %"):
+    with pytest.raises(InvalidInput, match=r"(?s)holds 3 cameras; .*third(\.png)?: baseline 0\.5 m, 100 %"):
         loaded(name, third, tmp_path)
     asked = ("left.png", "right.png") if key == "frames" else ("cam0", "cam1")
     rig = loaded(name, third, tmp_path, cameras=asked)
