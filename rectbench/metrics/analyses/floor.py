@@ -21,7 +21,8 @@ from rectbench.warps import lattice_pixels
 LOWEST = "optimal"
 """The method that is the floor."""
 FITTED_PIXELS, INTERVALS = 1_500, 5
-"""Of an image: more of either move the floor by a thousandth of itself."""
+"""Of an image. Twice as many pixels and one more interval lower the floor of log distortion by 0.1 % at most, and
+that of L by 1.7 %, on seven fisheye rigs; it is found within two seconds so, for all methods of a rig at once."""
 NONE = 1e-3
 """A floor below this is as good as none, and nothing is a multiple of it: of parallel pinholes it is 0."""
 
@@ -80,7 +81,8 @@ class ExcessOverFloor(Metric):
             "excess over floor",
             "lower",
             "How far log distortion on 95 % of the view is above the floor: the least that any rectification "
-            "to scan lines can have there, each line as is best for it. Empty where that is as good as 0.",
+            "to scan lines can have there, each line as is best for it, found to within about a hundredth of "
+            "itself. Empty where that is as good as 0.",
             shown="page",
         ),
         Column.share(

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from rectbench.plugins.figure import Drawing, Figure, FigureData
 from rectbench.reporting.shares import measure
-from rectbench.reporting.style import FAINT, INK, LOST, PAGE_INCHES, plain_log_ticks
+from rectbench.reporting.style import FAINT, INK, LOST, PAGE_INCHES, PAPER, plain_log_ticks
 from rectbench.reporting.survey import NAME, Reached, Surveyed, lens_classes, surveyed, surveyed_columns
 
 if TYPE_CHECKING:
@@ -93,7 +93,7 @@ def draw_survey(data: SurveyData) -> matplotlib.figure.Figure:
         right=1 - 0.06 / PAGE_INCHES,
         top=1 - _HEAD_INCHES / height,
         bottom=_FOOT_INCHES / height,
-        wspace=0.06,
+        wspace=0.12,
     )
     axes[0].set_xscale("log")
     for place, (ax, (title, rigs)) in enumerate(zip(axes, data.classes, strict=True)):
@@ -113,17 +113,17 @@ def _draw_class(ax: Axes, data: SurveyData, place: int) -> None:
     if math.isfinite(least):
         ax.axvline(max(least, _LEAST), color=FAINT, linewidth=0.7, linestyle=":", zorder=1)
     for row, one in enumerate(data.methods):
-        if row % 2:
-            ax.axhspan(row - 0.5, row + 0.5, color=_BAND, linewidth=0, zorder=0)
+        band = _BAND if row % 2 else PAPER
+        ax.axhspan(row - 0.5, row + 0.5, color=band, linewidth=0, zorder=0)
         reached = one.reached[place]
         if reached is not None:
-            _draw_reached(ax, row, reached, _COLOURS[one.works_from])
+            _draw_reached(ax, row, reached, _COLOURS[one.works_from], band)
     ax.tick_params(axis="y", length=0)
     ax.grid(axis="x", color=LOST, linewidth=0.4)
     ax.spines.left.set_visible(False)
 
 
-def _draw_reached(ax: Axes, row: int, reached: Reached, colour: str) -> None:
+def _draw_reached(ax: Axes, row: int, reached: Reached, colour: str, band: str) -> None:
     values = [max(value, _LEAST) for _, value in reached.by_rig]
     faded = reached.why != ""
     ax.plot(values, [row] * len(values), "o", color=colour, markersize=2.0, alpha=0.25 if faded else 0.55)
@@ -131,5 +131,5 @@ def _draw_reached(ax: Axes, row: int, reached: Reached, colour: str) -> None:
         mean = max(reached.average, _LEAST)
         ax.plot([mean, mean], [row - 0.36, row + 0.36], color=INK, linewidth=1.3, solid_capstyle="butt")
     if faded:
-        transform = ax.get_yaxis_transform()
-        ax.text(0.02, row, reached.why, transform=transform, va="center", size=5, color=INK)
+        told = ax.text(0.02, row, reached.why, va="center", size=5, color=INK)
+        told.set(transform=ax.get_yaxis_transform(), bbox={"facecolor": band, "linewidth": 0, "pad": 0.4})
