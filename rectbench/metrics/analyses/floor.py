@@ -21,8 +21,8 @@ from rectbench.warps import lattice_pixels
 LOWEST = "optimal"
 """The method that is the floor."""
 FITTED_PIXELS, INTERVALS = 1_500, 5
-"""Of an image. Twice as many pixels and one more interval lower the floor of log distortion by 0.1 % at most, and
-that of L by 1.7 %, on seven fisheye rigs; it is found within two seconds so, for all methods of a rig at once."""
+"""Of an image. Twice as many pixels and one more interval lower the floor of log distortion by 0.1 % at most,
+and that of L by 1.7 %, on seven fisheye rigs, and take twice as long."""
 NONE = 1e-3
 """A floor below this is as good as none, and nothing is a multiple of it: of parallel pinholes it is 0."""
 
