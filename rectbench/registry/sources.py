@@ -55,8 +55,14 @@ def _own_files(path: Path, root: Path, is_package: bool) -> list[Path]:
     return sorted(found)
 
 
+@cache
+def _nodes(source: bytes) -> tuple[ast.AST, ...]:
+    """All of a file, walked once: plugins share the files beside them."""
+    return tuple(ast.walk(ast.parse(source)))
+
+
 def _imported_files(file: Path, root: Path, is_package: bool) -> Iterator[Path]:
-    for node in ast.walk(ast.parse(file.read_bytes())):
+    for node in _nodes(file.read_bytes()):
         if isinstance(node, ast.ImportFrom):
             module = node.module.split(".") if node.module else []
             for alias in node.names:
@@ -86,8 +92,14 @@ def _files_of(place: Path, names: list[str]) -> Iterator[Path]:
 
 def _public_names(file: Path) -> frozenset[str]:
     """The names of rectbench that a file uses: `rb.NAME`, `from rectbench import NAME`, and modules of it."""
-    tree, aliases, names = ast.parse(file.read_bytes()), set(), set()
-    for node in ast.walk(tree):
+    return _names_in(file.read_bytes())
+
+
+@cache
+def _names_in(source: bytes) -> frozenset[str]:
+    aliases: set[str] = set()
+    names: set[str] = set()
+    for node in _nodes(source):
         if isinstance(node, ast.Import):
             aliases |= {alias.asname or alias.name for alias in node.names if alias.name == "rectbench"}
             names |= {alias.name for alias in node.names if alias.name.startswith(_OURS)}
@@ -95,9 +107,9 @@ def _public_names(file: Path) -> frozenset[str]:
             names |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom) and (node.module or "").startswith(_OURS):
             names.add(str(node.module))
-    attributes = [node for node in ast.walk(tree) if isinstance(node, ast.Attribute)]
+    attributes = [node for node in _nodes(source) if isinstance(node, ast.Attribute)]
     named = [node for node in attributes if isinstance(node.value, ast.Name) and node.value.id in aliases]
-    uses = sum(isinstance(node, ast.Name) and node.id in aliases for node in ast.walk(tree))
+    uses = sum(isinstance(node, ast.Name) and node.id in aliases for node in _nodes(source))
     return frozenset({*names, *(node.attr for node in named), *[_EVERYTHING] * (uses > len(named))})
 
 
