@@ -118,15 +118,21 @@ def lens_classes(part: Part) -> tuple[LensClass, ...]:
     )
 
 
-def surveyed(part: Part, column: Column, pose: str) -> tuple[Surveyed, ...]:
-    """Each method's numbers of a column under a pose, in the order of their places."""
-    classes = lens_classes(part)
-    bare = Counter(method.partition(" (")[0] for method in part.methods)
-    found = []
-    for method in part.methods:
-        own, name = part.select(pose=pose, method=method), method.partition(" (")[0]
-        reached = tuple(_reached(own, lenses, column) for lenses in classes)
-        found.append(Surveyed(method, name if bare[name] == 1 else method, _works_from(own), reached))
+def surveyed(part: Part, classes: Sequence[LensClass], column: Column) -> tuple[Surveyed, ...]:
+    """Each method's numbers of a column, under the pose that shows distortion, in the order of places."""
+    exact = part.select(pose=part.geometric_pose)
+    cells = {method: part.select(exact, method=method) for method in part.methods}
+    cells = {method: own for method, own in cells.items() if own}
+    rows = Counter(own[0].cell.method for own in cells.values())
+    found = (
+        Surveyed(
+            method=method,
+            label=own[0].cell.method if rows[own[0].cell.method] == 1 else method,
+            works_from="matches" if own[0].cell.matches else "pose",
+            reached=tuple(_reached(own, lenses, column) for lenses in classes),
+        )
+        for method, own in cells.items()
+    )
     return tuple(sorted(found, key=lambda one: one.place))
 
 
@@ -138,7 +144,3 @@ def _reached(results: Sequence[Result], lenses: LensClass, column: Column) -> Re
         return None
     found, why = averaged(column, own), lacking(own, column)
     return Reached(tuple(found.by_rig.items()), None if why else found.value, why)
-
-
-def _works_from(results: Sequence[Result]) -> str:
-    return "matches" if any(r.cell.matches for r in results) else "pose"

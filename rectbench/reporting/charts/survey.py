@@ -43,11 +43,12 @@ class Survey(Figure):
     def drawings(self, given: FigureData) -> Iterator[Drawing]:
         """One chart a share of the view, where fields of view are known."""
         part = given.part
-        classes = tuple((c.title, len(c.rigs)) for c in lens_classes(part))
+        classes = lens_classes(part)
         if classes:
+            titles = tuple((c.title, len(c.rigs)) for c in classes)
             for share, column in surveyed_columns(part).items():
                 label = f"{measure(column)} at {share} % of the view"
-                yield _drawing(SurveyData(label, classes, surveyed(part, column, part.geometric_pose)), share)
+                yield _drawing(SurveyData(label, titles, surveyed(part, classes, column)), share)
 
 
 def _drawing(data: SurveyData, share: int) -> Drawing:

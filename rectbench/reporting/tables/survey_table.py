@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from rectbench.plugins.metric import Column
 from rectbench.plugins.result import Result
@@ -11,6 +11,7 @@ from rectbench.reporting.shares import measure
 from rectbench.reporting.survey import (
     NAME,
     Reached,
+    Surveyed,
     excess_column,
     lens_classes,
     surveyed,
@@ -44,6 +45,7 @@ def survey_table(run: Run, part: Run) -> Table | None:
     classes = lens_classes(part)
     if not classes or not surveyed_columns(part):
         return None
+    beside = {method: _beside(run, part, part.select(method=method)) for method in part.methods}
     heads = (
         text_heading("method"),
         text_heading("works from"),
@@ -64,7 +66,10 @@ def survey_table(run: Run, part: Run) -> Table | None:
             f"{' and '.join(part.noisy_poses)} pose, over all lenses that the method serves."
         ),
         headings=heads,
-        sections=tuple(Section(title, _rows(run, part, column)) for title, column in _titled(part).items()),
+        sections=tuple(
+            Section(title, _rows(surveyed(part, classes, column), column, beside))
+            for title, column in _titled(part).items()
+        ),
     )
 
 
@@ -76,17 +81,12 @@ def _titled(part: Run) -> dict[str, Column]:
     return above | {f"{measure(column)}, {share} % of the view": column for share, column in columns.items()}
 
 
-def _rows(run: Run, part: Run, column: Column) -> tuple[tuple[Entry, ...], ...]:
-    methods = surveyed(part, column, part.geometric_pose)
+def _rows(
+    methods: Sequence[Surveyed], column: Column, beside: Mapping[str, Sequence[Entry]]
+) -> tuple[tuple[Entry, ...], ...]:
     fields = [_class_field(reached, column) for reached in zip(*(m.reached for m in methods), strict=True)]
     return tuple(
-        (
-            words(one.label),
-            words(one.works_from),
-            *(field[place] for field in fields),
-            _row_error(part.select(method=one.method), part),
-            *_times(run, part.select(method=one.method)),
-        )
+        (words(one.label), words(one.works_from), *(field[place] for field in fields), *beside[one.method])
         for place, one in enumerate(methods)
     )
 
@@ -104,14 +104,10 @@ def _class_field(reached: Sequence[Reached | None], column: Column) -> list[Entr
     return with_best(entries, column, [entry.value is not None for entry in entries])
 
 
-def _row_error(results: Sequence[Result], part: Run) -> Entry:
-    column = part.catalogue.column(ROWS)
-    return number(averaged(column, [r for r in results if r.pose in part.noisy_poses]).value, column)
-
-
-def _times(run: Run, results: Sequence[Result]) -> list[Entry]:
-    """Of the method under its options, wherever in the run they were measured."""
+def _beside(run: Run, part: Run, results: Sequence[Result]) -> list[Entry]:
+    """A method's rows under noisy poses, and its times, wherever in the run they were measured."""
     alike = {(r.cell.method, r.cell.options) for r in results}
-    own = [r for r in run.results if (r.cell.method, r.cell.options) in alike]
-    columns = map(run.catalogue.column, SPEED)
-    return [number(averaged(column, own).value, column) for column in columns]
+    noisy = [r for r in results if r.pose in part.noisy_poses]
+    timed = [r for r in run.results if (r.cell.method, r.cell.options) in alike]
+    columns = [(run.catalogue.column(ROWS), noisy), *((run.catalogue.column(key), timed) for key in SPEED)]
+    return [number(averaged(column, own).value, column) for column, own in columns]
