@@ -13,6 +13,9 @@ WIDE = (
     *("cylinder", "multi-pinhole", "equirectangular", "stereographic-circles"),
 )
 METHODS = (*SCAN_LINES, *WIDE, *HOMOGRAPHIES)
+OPTIONS = {
+    "opencv-omnidir": [{"mode": mode} for mode in ("longlati", "perspective", "cylindrical", "stereographic")]
+}
 
 report = rb.Report(
     name="field",
@@ -33,6 +36,7 @@ report = rb.Report(
             rigs=rb.rig_names(),
             motions=("as-calibrated", "sideways"),
             methods=METHODS,
+            options=OPTIONS,
             matches=("true + 0.1 px",),
             metrics=("geometry", "row_error"),
             figures=("survey",),
@@ -44,6 +48,7 @@ report = rb.Report(
             motions=("vertical", "diagonal", "forward", "apart-60"),
             poses=("exact",),
             methods=METHODS,
+            options=OPTIONS,
             matches=("true + 0.1 px",),
             metrics=("geometry",),
             figures=("motions",),
@@ -58,6 +63,7 @@ report = rb.Report(
                 ("forest", "pinhole-shifted", "as-calibrated"),
             ),
             methods=METHODS,
+            options=OPTIONS,
             poses=("estimated",),
             metrics=("geometry", "row_error", "row_error_features", "reconstruction", "timing"),
             figures=("bars",),

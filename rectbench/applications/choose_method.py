@@ -21,7 +21,7 @@ from rectbench.margin import MARGIN_DEG
 from rectbench.metrics import frame_costs, row_error, row_misfit
 from rectbench.plugins.defaults import CONTENDERS
 from rectbench.plugins.fitting import checked_options, fit
-from rectbench.plugins.rectifier import METHODS, Problem, Rectifier, pose_problem
+from rectbench.plugins.rectifier import METHODS, Problem, Rectifier, is_built_in, pose_problem
 from rectbench.registry import Plugin, registry
 from rectbench.rigs import Rig
 from rectbench.scored import Delivered, ScoredPixels, ScoredView, check_agreement
@@ -179,11 +179,6 @@ def has_splines(target: Any) -> bool:
         return True
     parts = fields(target) if is_dataclass(target) else ()
     return any(has_splines(getattr(target, part.name)) for part in parts)
-
-
-def is_built_in(plugin: Plugin[Rectifier]) -> bool:
-    """Whether a method came with rectbench."""
-    return type(plugin.value).__module__.startswith(METHODS.packages)
 
 
 def uncalibrated_methods() -> list[str]:

@@ -15,7 +15,7 @@ from typing_extensions import TypeVar
 from rectbench.cameras import Camera
 from rectbench.errors import InvalidInput
 from rectbench.margin import MARGIN_DEG
-from rectbench.registry.kind import Described, Kind, described_object
+from rectbench.registry.kind import Described, Kind, Plugin, described_object
 from rectbench.rigs import Rig
 from rectbench.types import FloatArray, Images, Matches
 from rectbench.warps.frame import rectifying_rotations
@@ -203,3 +203,8 @@ METHODS: Kind[Rectifier] = Kind(
     packages=("rectbench_methods",),
     described=_described,
 )
+
+
+def is_built_in(plugin: Plugin[Rectifier]) -> bool:
+    """Whether a method came with rectbench."""
+    return type(plugin.value).__module__.startswith(METHODS.packages)

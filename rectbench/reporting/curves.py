@@ -12,7 +12,7 @@ from rectbench.reporting.tables.summaries import averaged
 
 KEPT = "view_kept"
 """The column of the largest share of the view that a method shows all of."""
-FLOOR = "log_distortion_floor"
+FLOOR = "floor_log_distortion"
 """The column of the least that rectifications to scan lines can have where methods are ranked."""
 
 

@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rectbench.plugins.defaults import CONTENDERS
 from rectbench.plugins.figure import Look
-from rectbench.plugins.rectifier import METHODS
+from rectbench.plugins.rectifier import METHODS, is_built_in
 from rectbench.registry import registry
 from rectbench.reporting.tables.numbers import decade
 from rectbench.types import BoolArray, FloatArray
@@ -37,7 +38,6 @@ BEYOND = "#8c1d40"
 STYLE = Path(__file__).with_name("templates") / "rectbench.mplstyle"
 """The rest of how figures look, in matplotlib's words."""
 
-_BUILT_IN = METHODS.packages
 _COLOURS = (
     *("#0072b2", "#56b4e9", "#cc79a7", "#e69f00", "#d55e00", "#009e73", "#332288"),
     *("#999933", "#882255", "#666666", "#44aa99", "#ddaa33", "#117733"),
@@ -50,11 +50,13 @@ _HATCHES = ("", "//////", "......", "xxxxxx")
 def looks(methods: Sequence[str]) -> dict[str, Look]:
     """The look of each method of a run, in the run's order.
 
-    Built-in methods have the places of their sorted names, and so the same look in all runs; others take
-    the next free places, one after the other. Beyond the number of colours come hatches and other markers.
+    Built-in methods have places of their own, the contenders' first and then by name, and so the same look in
+    all runs; others take the next free places, one after the other. Beyond the number of colours come hatches
+    and other markers.
     """
-    built_in = [p.name for p in registry(METHODS).plugins() if type(p.value).__module__.startswith(_BUILT_IN)]
-    own_place = {method: place for place, method in enumerate(built_in)}
+    built_in = [plugin.name for plugin in registry(METHODS).plugins() if is_built_in(plugin)]
+    ordered = dict.fromkeys([*(name for name in CONTENDERS if name in built_in), *built_in])
+    own_place = {method: place for place, method in enumerate(ordered)}
     taken: dict[int, str] = {}
     for method in sorted(dict.fromkeys(methods), key=lambda method: own_place.get(method, len(built_in))):
         free = (place for place in _places(own_place.get(method, len(built_in))) if place not in taken)

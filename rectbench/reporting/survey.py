@@ -11,7 +11,7 @@ from itertools import pairwise
 from rectbench.metrics.analyses.floor import NONE
 from rectbench.plugins.metric import Column
 from rectbench.plugins.result import Part, Result
-from rectbench.reporting.curves import ranked_share, shares, view_key
+from rectbench.reporting.curves import FLOOR, ranked_share, shares, view_key
 from rectbench.reporting.tables.standings import lacking
 from rectbench.reporting.tables.summaries import averaged
 
@@ -22,8 +22,8 @@ BOUNDS_DEG = (60.0, 110.0, 165.0)
 images serve without loss, from the last on hardly any of the view fits into one."""
 ROUNDING = 1e-6
 """Less distortion is none."""
-EXCESS, FLOOR = "log_distortion_excess", "log_distortion_floor"
-"""Columns: how far a method is above the least that scan lines can have, and what that is."""
+EXCESS = "excess_over_floor"
+"""The column of how far a method is above the least that scan lines can have."""
 MIDDLE = 50
 """The lesser share (%) of the view that is looked at."""
 

@@ -52,9 +52,9 @@ def test_excess_is_the_share_above_the_floor_of_both_measures() -> None:
     rect = rb.rectify(pair, "abraham")
     found, floor, delivered = excess(pair, rect), floor_of(pair), Delivered.of(rect, ScoredView.of(pair))
     expected = delivered.log_distortion(0.95) / floor.log_distortion - 1
-    assert found["log_distortion_excess"] == pytest.approx(expected)
+    assert found["excess_over_floor"] == pytest.approx(expected)
     L = float(distortion_of(delivered.within(0.95), "rescaled"))
-    assert found["distortion_excess"] == pytest.approx(L / floor.distortion - 1)
+    assert found["excess_over_floor_distortion"] == pytest.approx(L / floor.distortion - 1)
     # One scale, whatever it is, changes neither.
     again = excess(pair, rect.scaled(0.7))
     for key, value in found.items():
@@ -64,15 +64,15 @@ def test_excess_is_the_share_above_the_floor_of_both_measures() -> None:
 def test_who_does_not_show_the_view_has_no_excess() -> None:
     pair = rb.load_rig("t265").scaled(0.25)
     found = excess(pair, rb.rectify(pair, "conventional"))
-    assert set(found) == {"log_distortion_floor"}
+    assert set(found) == {"floor_log_distortion"}
 
 
 def test_over_no_floor_nothing_is_a_multiple() -> None:
     lens = rb.Camera("pinhole", (320, 240), {"fx": 250.0, "fy": 250.0, "cx": 159.5, "cy": 119.5})
     pair = rb.Rig(lens, lens, np.eye(3), np.array([-0.1, 0, 0]), name="parallel")
     found = excess(pair, rb.rectify(pair, "conventional"))
-    assert set(found) == {"log_distortion_floor"}
-    assert found["log_distortion_floor"] < 1e-3
+    assert set(found) == {"floor_log_distortion"}
+    assert found["floor_log_distortion"] < 1e-3
 
 
 def test_the_source_of_the_floors_method_is_part_of_a_cells_key() -> None:

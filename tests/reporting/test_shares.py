@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from rectbench.plugins.catalogue import known
-from rectbench.reporting.shares import explained, reads, share_of
+from rectbench.reporting.shares import explained, is_of_own_view, reads, share_of
 
 
 def test_columns_of_one_thing_on_many_shares_have_one_entry() -> None:
@@ -23,3 +23,8 @@ def test_no_share_reads_as_if_it_were_a_percentile() -> None:
     for column in known().columns:
         if share_of(column) is not None:
             assert f"{share_of(column)} % of" in reads(column).replace("\u00a0", " ")
+
+
+def test_the_excess_over_the_floor_is_of_one_view_for_all_and_so_has_a_best() -> None:
+    assert not is_of_own_view(known().column("excess_over_floor"))
+    assert not is_of_own_view(known().column("excess_over_floor_distortion"))

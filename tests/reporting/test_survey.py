@@ -116,13 +116,14 @@ def test_the_excess_over_the_floor_comes_first_and_leaves_out_what_has_no_floor(
     floors = {"tele": 0.0, "car": 0.1, "camera": 0.1, "fisheye": 0.1, "dome": 0.1}
     rows = [
         row(rig, "abraham")
-        | {"log_distortion_floor": floor}
-        | ({"log_distortion_excess": VIEWS_DEG[rig] / 100} if floor else {})
+        | {"floor_log_distortion": floor}
+        | ({"excess_over_floor": VIEWS_DEG[rig] / 100} if floor else {})
         for rig, floor in floors.items()
     ]
     run = read_run(write_run(rows, figures=("survey",)))
     excess = next(table for table in all_tables(run) if table.name == "survey").sections[0]
     assert excess.title == "excess over floor [%], 95 % of the view"
+    assert [entry.best for entry in excess.rows[0][2:6]] == [False] * 4  # alone, nobody was beaten
     assert [entry.text for entry in excess.rows[0][2:6]] == ["–", "90.0", "150.0", "200.0"]
 
 

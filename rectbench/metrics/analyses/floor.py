@@ -77,7 +77,7 @@ class ExcessOverFloor(Metric):
     fits = (LOWEST,)
     columns = (
         Column.share(
-            "log_distortion_excess",
+            "excess_over_floor",
             "excess over floor",
             "lower",
             "How far log distortion on 95 % of the view is above the floor: the least that any rectification "
@@ -86,13 +86,13 @@ class ExcessOverFloor(Metric):
             shown="page",
         ),
         Column.share(
-            "distortion_excess",
+            "excess_over_floor_distortion",
             "excess over floor, L",
             "lower",
             "The same of the paper's L, each method at the one scale that is best for it.",
         ),
         distortion_column(
-            "log_distortion_floor",
+            "floor_log_distortion",
             "floor",
             "The least log distortion on 95 % of the view that any rectification to scan lines can have.",
             shown="rows",
@@ -102,11 +102,11 @@ class ExcessOverFloor(Metric):
     def compute(self, case: Case) -> dict[str, float]:
         """Of both images together, over the floor of the true rig; that alone where nothing is comparable."""
         floor = floor_of(case.rig, case.rect.rig.margin_deg or MARGIN_DEG)
-        found = {"log_distortion_floor": floor.log_distortion}
+        found = {"floor_log_distortion": floor.log_distortion}
         if case.once(case_row_misfit).rectifies:
             pairs = {
-                "log_distortion_excess": (log_distortion_at(case.delivered), floor.log_distortion),
-                "distortion_excess": (distortion_at(case.delivered), floor.distortion),
+                "excess_over_floor": (log_distortion_at(case.delivered), floor.log_distortion),
+                "excess_over_floor_distortion": (distortion_at(case.delivered), floor.distortion),
             }
             found |= {key: value / least - 1 for key, (value, least) in pairs.items() if least > NONE}
         return {key: value for key, value in found.items() if math.isfinite(value)}

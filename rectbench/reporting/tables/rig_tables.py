@@ -10,6 +10,7 @@ from rectbench.plugins.result import Result
 from rectbench.reporting.curves import ranked_by, ranked_share, ranking_stem, view_key
 from rectbench.reporting.footnotes import with_footnotes
 from rectbench.reporting.names import named, slug
+from rectbench.reporting.shares import is_of_own_view
 from rectbench.reporting.tables.captions import averages_text, capitalised, units_text
 from rectbench.reporting.tables.findings import reversals
 from rectbench.reporting.tables.numbers import MISSING
@@ -148,7 +149,7 @@ def _mean_row(found: Standing, ranking: Column, views: int) -> tuple[Entry, ...]
 def distortion_tables(run: Run) -> Iterator[Table]:
     """The ranking measure on shares of the view, then distortion under each protocol; a section a rig."""
     columns, stem = topic_columns(run, "Distortion"), ranking_stem(run.catalogue)
-    of_view = [column for column in columns if column.key.startswith(stem)]
+    of_view = [c for c in columns if c.key.startswith(stem) or not is_of_own_view(c)]
     others = [column for column in columns if column not in of_view]
     if of_view:
         yield _by_rig(run, of_view, slug(stem), f"{capitalised(stem.replace('_', ' '))} by view", _SHARES)
