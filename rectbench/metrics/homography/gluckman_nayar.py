@@ -11,7 +11,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from rectbench.plugins.metric import Case, Column, Metric, Tolerance
+from rectbench.metrics.distortion import distortion_column
+from rectbench.plugins.metric import Case, Metric, Tolerance
 from rectbench.scored import dense_pixels
 from rectbench.warps import Rectification, Warp
 from rectbench.warps.jacobians import entries, losses, singular_values
@@ -42,24 +43,17 @@ class GluckmanNayar(Metric):
 
     name, topic = "gluckman_nayar", "Distortion"
     columns = (
-        Column(
+        distortion_column(
             "gluckman_nayar_area",
             "local area",
-            "",
-            "lower",
             "Gluckman and Nayar's criterion: the mean of (|det J| − 1)² over all source pixels, "
             "shown or not.",
-            average="geometric",
-            floor=1e-6,
             tolerance=Tolerance(0.01, 1e-6),
         ),
-        Column(
+        distortion_column(
             "gluckman_nayar_aspect",
             "local aspect",
-            "",
-            "lower",
             "Mean of σ1/σ2 over all source pixels, shown or not; 1 where squares stay squares.",
-            average="geometric",
             tolerance=Tolerance(0.01, 1e-6),
         ),
     )

@@ -18,7 +18,7 @@ import math
 
 import numpy as np
 
-from rectbench.metrics.homography.outline import Outline
+from rectbench.metrics.homography.outline import Outline, deviation
 from rectbench.metrics.view import perspective_matrix
 from rectbench.plugins.metric import Case, Column, Metric, Tolerance
 from rectbench.scored import dense_pixels
@@ -75,25 +75,17 @@ class LoopZhang(Metric):
             floor=1e-9,
             tolerance=Tolerance(0.01, 1e-9),
         ),
-        Column(
+        deviation(
             "loop_zhang_perpendicularity",
             "shear, perpendicularity",
-            "",
-            "lower",
-            "|cos| of the angle between the lines that join the middles of opposite edges of the source "
-            "image, as rectified, which Loop and Zhang's shear makes 0; mean of both images.",
-            floor=1e-9,
-            tolerance=Tolerance(0.01, 1e-9),
+            meaning="|cos| of the angle between the lines that join the middles of opposite edges of the "
+            "source image, as rectified, which Loop and Zhang's shear makes 0; mean of both images.",
         ),
-        Column(
+        deviation(
             "loop_zhang_proportion_off",
             "shear, proportion off",
-            "",
-            "lower",
-            "How far the ratio of these lines' squared lengths is from that in the source image, which Loop "
-            "and Zhang's shear keeps, as a share of it; mean of both images.",
-            floor=1e-9,
-            tolerance=Tolerance(0.01, 1e-9),
+            meaning="How far the ratio of these lines' squared lengths is from that in the source image, "
+            "which Loop and Zhang's shear keeps, as a share of it; mean of both images.",
         ),
     )
 

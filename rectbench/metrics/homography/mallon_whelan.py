@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from rectbench.metrics.homography.outline import Outline, angle_deg
-from rectbench.plugins.metric import Case, Column, Metric, Tolerance
+from rectbench.metrics.homography.outline import Outline, angle_deg, deviation
+from rectbench.plugins.metric import Case, Metric
 
 
 def orthogonality_deg(outline: Outline) -> float:
@@ -37,25 +37,18 @@ class MallonWhelan(Metric):
 
     name, topic = "mallon_whelan", "Distortion"
     columns = (
-        Column(
+        deviation(
             "orthogonality_off_deg",
             "orthogonality, off",
-            "°",
-            "lower",
-            "|E_O − 90°| of Mallon and Whelan: the angle between the lines that join the middles of opposite "
-            "edges of the source image, as rectified; mean of both images.",
-            floor=1e-6,
-            tolerance=Tolerance(0.01, 1e-6),
+            unit="°",
+            meaning="|E_O − 90°| of Mallon and Whelan: the angle between the lines that join the middles of "
+            "opposite edges of the source image, as rectified; mean of both images.",
         ),
-        Column(
+        deviation(
             "aspect_ratio_off",
             "aspect ratio, off",
-            "",
-            "lower",
-            "|E_A − 1| of Mallon and Whelan: the ratio of the diagonals of the source image, as rectified; "
-            "mean of both images. None where a lens shows nothing in the corners.",
-            floor=1e-6,
-            tolerance=Tolerance(0.01, 1e-6),
+            meaning="|E_A − 1| of Mallon and Whelan: the ratio of the diagonals of the source image, as "
+            "rectified; mean of both images. None where a lens shows nothing in the corners.",
         ),
     )
 

@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
+from rectbench.plugins.metric import Column, Tolerance
 from rectbench.types import FloatArray
 from rectbench.warps import Warp
 
 CORNERS = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
 MIDDLES = np.array([[0.5, 0.0], [1.0, 0.5], [0.5, 1.0], [0.0, 0.5]])
 CENTRE = np.array([0.5, 0.5])
+
+deviation = partial(Column, better="lower", floor=1e-6, tolerance=Tolerance(0.01, 1e-6))
+"""A column of how far an outline is from the ideal one."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rectbench.metrics.homography.outline import Outline, angle_deg
+from rectbench.metrics.homography.outline import Outline, angle_deg, deviation
 from rectbench.plugins.metric import Case, Column, Metric, Tolerance
 from rectbench.warps import Warp
 
@@ -58,34 +58,24 @@ class UsrCgd(Metric):
 
     name, topic = "usr_cgd", "Distortion"
     columns = (
-        Column(
+        deviation(
             "usr_cgd_aspect_off",
             "USR-CGD aspect, off",
-            "",
-            "lower",
-            "|½ (a'o'/c'o' + b'o'/d'o') − 1| of the rectified corners a' to d' of the source image and its "
-            "centre o'; this and what follows of USR-CGD is the mean of both images, and there only where "
+            meaning="|½ (a'o'/c'o' + b'o'/d'o') − 1| of the rectified corners a' to d' of the source image and "
+            "its centre o'; this and what follows of USR-CGD is the mean of both images, and there only where "
             "the lens shows the corners.",
-            floor=1e-6,
-            tolerance=Tolerance(0.01, 1e-6),
         ),
-        Column(
+        deviation(
             "usr_cgd_skewness_deg",
             "USR-CGD skewness",
-            "°",
-            "lower",
-            "Mean of how far the angles in the rectified corners are from 90°.",
-            floor=1e-6,
-            tolerance=Tolerance(0.01, 1e-6),
+            unit="°",
+            meaning="Mean of how far the angles in the rectified corners are from 90°.",
         ),
-        Column(
+        deviation(
             "usr_cgd_rotation_deg",
             "USR-CGD rotation",
-            "°",
-            "lower",
-            "Angle by which the line from the image's centre to the middle of its right edge turns.",
-            floor=1e-6,
-            tolerance=Tolerance(0.01, 1e-6),
+            unit="°",
+            meaning="Angle by which the line from the image's centre to the middle of its right edge turns.",
         ),
         Column(
             "usr_cgd_size_ratio",
