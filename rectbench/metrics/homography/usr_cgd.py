@@ -61,9 +61,9 @@ class UsrCgd(Metric):
         deviation(
             "usr_cgd_aspect_off",
             "USR-CGD aspect, off",
-            meaning="|½ (a'o'/c'o' + b'o'/d'o') − 1| of the rectified corners a' to d' of the source image and "
-            "its centre o'; this and what follows of USR-CGD is the mean of both images, and there only where "
-            "the lens shows the corners.",
+            meaning="|½ (a'o'/c'o' + b'o'/d'o') − 1| of the rectified corners a' to d' of the source image "
+            "and its centre o'; this and what follows of USR-CGD is the mean of both images, and there only "
+            "where the lens shows the corners.",
         ),
         deviation(
             "usr_cgd_skewness_deg",
